@@ -32,8 +32,7 @@ struct WaitingList {
 struct Distribution {
   const char* name;
   const char* description;
-  // Null: rays go round all ranks instead, each of which tests them against what it has, or with
-  // `pools` to who asks for some.
+  // Null: rays go round all ranks instead, each of which tests them against what it has.
   RoutingDecision (*decide)(const WaitingList& waiting);
   // Whether every rank has the whole scene, and nothing of this takes place.
   bool replicated = false;
@@ -49,8 +48,6 @@ struct Distribution {
   // How the scene is divided, for share_options().
   ShareOptions::Division division = ShareOptions::Division::clusters;
   bool compresses = false;  // clusters that are fetched
-  // Whether idle ranks get rays of others that wait to be intersected.
-  bool pools = false;
 
   // Whether clusters may be pages of a pack (SharedScene::of_pack).
   bool reads_packs() const {

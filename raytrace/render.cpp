@@ -276,10 +276,7 @@ struct Renderer::Memory {
 
 Renderer::Renderer(const Tracer& tracer) : memory_(new Memory{&tracer, nullptr, nullptr}) {}
 Renderer::Renderer(SharedScene& scene, const Distribution& distribution)
-    : memory_(new Memory{nullptr, &scene, &distribution}) {
-  if (distribution.pools && !scene.is_whole())
-    throw std::invalid_argument("a pool of rays needs the whole scene on every rank");
-}
+    : memory_(new Memory{nullptr, &scene, &distribution}) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

@@ -50,8 +50,6 @@ std::vector<ClusterData> divide(comm::Communicator& communicator,
                                 const Triangles& triangles, const geometry::Box3& box,
                                 const ShareOptions& options) {
   const std::uint32_t most = most_triangles(options, triangles.all, communicator.size());
-  if (options.division == ShareOptions::Division::whole)
-    return cut_clusters(instances, 0, triangles.all, most, triangles.first);
   if (options.division == ShareOptions::Division::clusters)
     return cut_clusters(instances, triangles.begin, triangles.end, most, triangles.first);
   const VoxelGrid grid = voxel_grid(box, triangles.all, communicator.size());
@@ -178,7 +176,6 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
       compresses_(options.compresses) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<int> owners;
-  const bool is_whole = options.division == ShareOptions::Division::whole;
   const bool is_dealt = options.division != ShareOptions::Division::clusters;
   for (std::size_t i = 0; i < mine.size() && !is_dealt; ++i) {
     owners.push_back(options.assignment == ShareOptions::Assignment::random
@@ -213,7 +210,6 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   std::uint32_t first_mine = 0;
   const std::vector<comm::Buffer> messages = comm::all_gather(communicator, std::move(message));
   for (int rank = 0; rank < communicator.size(); ++rank) {
-    if (is_whole && rank != communicator.rank()) continue;
     const std::byte* at = messages[rank].data();
     std::uint64_t clusters = 0;
     std::memcpy(&clusters, at, sizeof(clusters));
@@ -253,10 +249,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   gather(Joined::none);
   const std::uint64_t all_bytes = comm::all_reduce_value(communicator, bytes(), std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
-  if (is_whole)
-    nothing_ = std::make_unique<const ClusterScene>(std::vector<std::shared_ptr<const Cluster>>(),
-                                                    build_, device_);
-  if (!is_whole) degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
+  degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
   note_bytes();
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

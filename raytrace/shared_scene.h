@@ -28,8 +28,8 @@ struct ShareOptions {
   std::uint64_t seed = 1;  // of random
   // What clusters are: parts of equally many triangles, of a hierarchy, whose upper part every rank
   // has (Caspary and Scherson 1989), or equal voxels of space with what reaches into them (Jevans
-  // 1989). whole: every rank has all clusters.
-  enum class Division : std::uint8_t { clusters, voxels, whole } division = Division::clusters;
+  // 1989).
+  enum class Division : std::uint8_t { clusters, voxels } division = Division::clusters;
   // Whether clusters that are fetched travel compressed (Wald et al. 2001).
   bool compresses = false;
   // The height at which Caspary's hierarchy is cut: about 2^level subtrees are left below;
@@ -98,10 +98,6 @@ class SharedScene {
   void begin_frame(bool chooses = false);
   // Most of what is at hand, as one scene.
   const ClusterScene& resident() const { return *resident_; }
-  // Whether every rank has all clusters.
-  bool is_whole() const { return nothing_ != nullptr; }
-  // Nothing at all. REQUIRES: is_whole().
-  const ClusterScene& nothing() const { return *nothing_; }
   bool is_resident(std::uint32_t cluster) const { return is_resident_[cluster] != 0; }
   // The boxes of all that is not resident.
   const ClusterTree& elsewhere() const { return elsewhere_; }
@@ -201,8 +197,7 @@ class SharedScene {
   std::vector<ClusterBox> boxes_;  // of all clusters
   geometry::Box3 bounds_;
   std::unique_ptr<ClusterScene> resident_;
-  std::unique_ptr<const ClusterScene> nothing_;  // of Division::whole
-  std::vector<std::uint8_t> is_resident_;        // by cluster
+  std::vector<std::uint8_t> is_resident_;  // by cluster
   ClusterTree elsewhere_, everywhere_;
   std::vector<int> owners_;                  // by cluster
   std::vector<std::uint64_t> packed_bytes_;  // by cluster

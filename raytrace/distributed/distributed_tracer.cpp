@@ -35,10 +35,6 @@ constexpr std::size_t kReadyForThread = 8;
 // A rank looks whether messages have come at least so often while it waits.
 constexpr auto kMoment = std::chrono::microseconds(100);
 
-// Where rays are taken by ranks that have none: tasks that wait, of which a thread takes so many at
-// once.
-constexpr std::size_t kPooledTasks = 64, kPooledAtOnce = 4;
-
 // Tiles that are passed on in one message: few, as their rank may have nothing else to do.
 constexpr std::size_t kTilesAtOnce = 16;
 
@@ -50,7 +46,6 @@ bool is_decided(const ShadowMessage& shadow) { return shadow.return_address.occl
 
 std::unique_ptr<RayRouter> make_router(const Distribution& distribution,
                                        const RoutingContext& context) {
-  if (distribution.pools) return make_pool_router(context);
   return distribution.decide != nullptr ? make_cluster_router(distribution, context)
                                         : make_ring_router(context);
 }
@@ -69,17 +64,15 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       passes_tiles_on_(scene.file() == nullptr &&
                        !(distribution.fetches && scene.has_room_for_all())),
       plans_tiles_(distribution.plans_tiles && passes_tiles_on_ && communicator.size() > 1),
-      pools_(distribution.pools && communicator.size() > 1),
       plan_(plan),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
       messenger_(communicator, termination_) {
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t threads = static_cast<std::size_t>(parallel::arena_threads());
-  if (distribution.decide == nullptr && !distribution.pools) scene_.learn_owners(communicator);
+  if (distribution.decide == nullptr) scene_.learn_owners(communicator);
   scene_.begin_frame(distribution.chooses);
   if (scene_.elsewhere().empty()) ready_at_once_ = threads == 1 ? 1 : kReadyForThread * threads;
-  if (pools_) ready_at_once_ = kPooledTasks;
   waiting_.to_intersect.resize(ranks);
   waiting_.to_answer.resize(ranks);
   tiles_to_send_.resize(ranks);
@@ -157,13 +150,8 @@ void DistributedTracer::wait_a_moment() {
 }
 
 void DistributedTracer::finish() {
-  is_finishing_ = true;
   while (!termination_.is_over()) {
     if (serve()) continue;
-    if (router_->has_plans()) {
-      wait_a_moment();
-      continue;
-    }
     termination_.idle();
     if (termination_.is_over()) break;
     if (const auto control =
@@ -199,7 +187,6 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
     case MessageKind::intersect: {
       RayQueue queue = unpack_rays(message, header);
       if (!queue.empty()) waiting_.at_resident.push_back(std::move(queue));
-      router_->got_rays(envelope.source);
       note_travel(header.rays + header.shadows, start);
       break;
     }
@@ -222,23 +209,11 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
 }
 
 bool DistributedTracer::advance_pixel_tasks() {
-  waiting_.pending_tasks = ready_.size();
-  waiting_.is_done = is_finishing_ && in_flight_ == 0 && waiting_tiles_.empty();
   if (ready_.empty()) return false;
-  std::vector<std::uint32_t> ready = std::exchange(ready_, {});
-  std::size_t given = 0;
-  if (pools_) {
-    waiting_.pending_tasks = ready.size();
-    given = router_->give_tasks();
-    const std::size_t now = std::min(
-        ready.size(), given + kPooledAtOnce * static_cast<std::size_t>(parallel::arena_threads()));
-    ready_.assign(ready.begin() + static_cast<std::ptrdiff_t>(now), ready.end());
-    ready.resize(now);
-    waiting_.pending_tasks = ready_.size();
-  }
+  const std::vector<std::uint32_t> ready = std::exchange(ready_, {});
   std::vector<Advanced> advanced(ready.size());
   parallel::parallel_for(0, ready.size(), 1,
-                         [&](std::size_t i) { advanced[i] = advance(ready[i], i < given); });
+                         [&](std::size_t i) { advanced[i] = advance(ready[i]); });
   std::uint64_t tests = 0;
   for (std::size_t i = 0; i < ready.size(); ++i) {
     PixelTask& pixel_task = pixel_tasks_[ready[i]];
@@ -249,8 +224,6 @@ bool DistributedTracer::advance_pixel_tasks() {
     pixel_task.open = advanced[i].travelling.size();
     if (advanced[i].done) {
       end_task(ready[i]);
-    } else if (advanced[i].travelling.empty()) {
-      ready_.push_back(ready[i]);
     } else {
       route_all(std::move(advanced[i].travelling));
     }
@@ -263,31 +236,25 @@ bool DistributedTracer::advance_pixel_tasks() {
 // Until it is done or some rays have to travel. It takes an integrator when it begins and gives it
 // back when it is done, so that tasks of which no ray travels have one after the other the same,
 // which is in the caches.
-DistributedTracer::Advanced DistributedTracer::advance(std::uint32_t index, bool is_given) {
+DistributedTracer::Advanced DistributedTracer::advance(std::uint32_t index) {
   const FlushToZero flush;
   const double start = thread_seconds();
   PixelTask& pixel_task = pixel_tasks_[index];
   if (pixel_task.integrator == nullptr) pixel_task.integrator = frame_.integrators.take();
   WavefrontIntegrator& integrator = *pixel_task.integrator;
-  // Rays that are given to another rank meet nothing here, and all of it elsewhere.
-  const ClusterScene& here = is_given ? scene_.nothing() : scene_.resident();
-  const HomeScene home{here.local(scene_.shader()), frame_.context.shader, kernels_,
-                       is_given ? scene_.everywhere() : scene_.elsewhere(), *router_};
+  const HomeScene home{scene_.resident().local(scene_.shader()), frame_.context.shader, kernels_,
+                       scene_.elsewhere(), *router_};
   ReturnAddress address;
   address.rank = communicator_.rank();
   address.pixel_task = index;
   Advanced advanced;
-  // One batch of rays after the other, unless another rank may want the next one.
-  for (bool goes_on = true; goes_on && !advanced.done && advanced.travelling.empty();
-       goes_on = !pools_ || !pixel_task.started) {
+  while (!advanced.done && advanced.travelling.empty()) {
     if (std::exchange(pixel_task.started, true))
       integrator.advance();
     else
       integrator.start(pixel_task.task);
     if (!integrator.done()) {
-      const std::uint64_t rays =
-          intersect_at_home(home, address, integrator.batch(), advanced.travelling);
-      if (!is_given) advanced.tests += rays;
+      advanced.tests += intersect_at_home(home, address, integrator.batch(), advanced.travelling);
       continue;
     }
     add_samples(frame_, integrator, pixel_task.task, pixel_task.tile->pixels);

@@ -81,7 +81,7 @@ class DistributedTracer {
   void receive(const comm::Envelope& envelope);
   void note_travel(std::uint64_t rays, double start);
   bool advance_pixel_tasks();
-  Advanced advance(std::uint32_t pixel_task, bool is_given);
+  Advanced advance(std::uint32_t pixel_task);
   void end_task(std::uint32_t pixel_task);
   bool intersect_waiting();
   void intersect(ClusterBatch& batch);
@@ -103,8 +103,6 @@ class DistributedTracer {
   std::size_t most_in_flight_;  // tasks
   bool passes_tiles_on_;        // to ranks that have what they show
   bool plans_tiles_;            // for the next frame
-  bool pools_;                  // rays that wait go to ranks that have none
-  bool is_finishing_ = false;   // no tile will be added
   std::span<const std::int32_t> plan_;
   Kernels kernels_;
   comm::Termination termination_;

@@ -67,9 +67,7 @@ class RayMessenger {
 
 // Rays on a rank, by what they wait for.
 struct WaitingRays {
-  std::size_t pending_tasks = 0;      // whose rays wait to be intersected here
-  bool is_done = false;               // the rank has no tasks any more, and gets none
-  std::vector<RayQueue> at_resident;  // to be intersected with those clusters
+  std::vector<RayQueue> at_resident;                       // to be intersected with those clusters
   std::unordered_map<std::uint32_t, RayQueue> by_cluster;  // that are not resident
   std::vector<RayQueue> to_intersect, to_answer;           // by rank: to be sent
   // Clusters that have just come: they stay until their rays have been intersected, however little
@@ -106,14 +104,6 @@ class RayRouter {
   // Decides about rays whose clusters are not at hand, or about clusters. `idle`: there is nothing
   // else to do.
   virtual void take_turn(bool idle) = 0;
-
-  // The rays of so many of the tasks whose rays wait to be intersected here go to another rank in
-  // place of that: with kOnward, by choose_next.
-  virtual std::size_t give_tasks() { return 0; }
-  // Whether a message may be sent though no other comes before: the rank is not idle then.
-  virtual bool has_plans() const { return false; }
-  // Rays to be intersected have come from another rank.
-  virtual void got_rays(int) {}
 };
 
 // To the owners of clusters, or clusters from there, as the distribution decides.
@@ -121,7 +111,5 @@ std::unique_ptr<RayRouter> make_cluster_router(const Distribution& distribution,
                                                const RoutingContext& context);
 // From rank to rank.
 std::unique_ptr<RayRouter> make_ring_router(const RoutingContext& context);
-// To ranks that ask for some.
-std::unique_ptr<RayRouter> make_pool_router(const RoutingContext& context);
 
 }  // namespace delray::raytrace
