@@ -32,8 +32,9 @@ struct Method {
   bool alone = false;   // works with one thread, whatever the options say
   bool seeded = true;   // `seed` decides about something
   bool queued = false;  // `queue` does
-  // Takes quadratic time where many points lie near a common circle or sphere, or two lines.
-  bool quadratic = false;
+  // Takes seconds for some thousands of points in space, or quadratic time where many points lie
+  // near a common circle or sphere, or two lines.
+  bool slow = false;
   // Leaves `created_by` empty where one thread made everything.
   // REQUIRES: options that resolve() returned.
   Result (*triangulate)(PointView<double> points, const Options& options);

@@ -14,11 +14,11 @@ inline std::size_t size_for(std::string_view kind, std::size_t n) {
   return kind == "of all sizes" ? (n + 3) / 4 : n;
 }
 
-// Whether a method of quadratic time would take seconds for so many points of a kind of
+// Whether a slow method would take seconds for so many points of a kind of
 // hard_points(); small sets show whether it is right. Coordinates "of all sizes" are numbers of
 // thousands of bits.
 inline bool takes_long(const Method& method, std::size_t points, std::string_view kind) {
-  return method.quadratic && points > (kind == "of all sizes" ? 60 : 300);
+  return method.slow && points > (kind == "of all sizes" ? 60 : 300);
 }
 
 }  // namespace delray::delaunay

@@ -42,8 +42,8 @@ constexpr Repetitions kUsual = {3, 9, 120}, kQuick = {1, 3, 25};
 constexpr std::string_view kOfSplits = "optimistic";
 // Capacities of queues that are compared, in points, as in the report.
 constexpr std::size_t kQueues[] = {16, 256, 4096};
-// Above it, methods of quadratic time have to be asked for by name.
-constexpr std::size_t kMostForQuadratic = 20'000;  // points
+// Above it, slow methods have to be asked for by name.
+constexpr std::size_t kMostForSlow = 20'000;  // points
 // The report's sequential algorithm.
 constexpr std::string_view kSequential = "insertion", kOfSequential = "dag";
 
@@ -57,14 +57,14 @@ std::vector<const delaunay::Method*> compared_methods(const TriangulateRequest& 
     if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
     if (!request.methods.empty()) {
       if (std::ranges::find(request.methods, method.name) == request.methods.end()) continue;
-    } else if (method.quadratic && points > kMostForQuadratic) {
+    } else if (method.slow && points > kMostForSlow) {
       left_out += (left_out.empty() ? "" : ", ") + std::string(method.name);
       continue;
     }
     result.push_back(&method);
   }
   if (!left_out.empty()) {
-    spdlog::info("left out above {} points, unless --method names them: {}", kMostForQuadratic,
+    spdlog::info("left out above {} points, unless --method names them: {}", kMostForSlow,
                  left_out);
   }
   return result;
