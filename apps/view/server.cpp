@@ -34,6 +34,7 @@ using boost::system::error_code;
 constexpr std::size_t kMostConnections = 32;
 constexpr std::uint32_t kLongestHeader = 8192;    // bytes
 constexpr std::chrono::seconds kRequestTime{10};  // to ask, and to take the answer
+constexpr std::chrono::milliseconds kRetry{100};  // when connections cannot be accepted
 constexpr std::chrono::seconds kSilence{30};      // after which a page is not there any more
 constexpr double kMessagesPerSecond = 400, kBurst = 400;  // a page sends at most some hundred
 constexpr std::size_t kMostTextsWaiting = 256;            // for a page that takes none
@@ -213,6 +214,7 @@ class Server::Listener {
   ServerEvents events_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_{context_};
+  asio::steady_timer retry_{context_};
   tcp::endpoint endpoint_;
   bool only_this_machine_ = true;
   PageId next_ = 1;
@@ -380,7 +382,12 @@ void Server::Listener::accept() {
   acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
     if (!error && connections_.size() + asked_ < kMostConnections)
       std::make_shared<Asked>(*this, std::move(socket))->read();
-    if (error != asio::error::operation_aborted) accept();
+    if (!error) return accept();
+    if (error == asio::error::operation_aborted) return;
+    retry_.expires_after(kRetry);  // the process has no descriptors left, as it may be
+    retry_.async_wait([this](const error_code& stopped) {
+      if (!stopped) accept();
+    });
   });
 }
 
