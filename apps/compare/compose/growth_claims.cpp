@@ -18,24 +18,24 @@ namespace delray::apps {
 namespace {
 
 constexpr std::array kClaims = {
-    GrowthClaim{"centralized", GrowingFigure::bytes, Growth::constant},
-    GrowthClaim{"centralized", GrowingFigure::bytes_sent, Growth::constant},
-    GrowthClaim{"centralized", GrowingFigure::pixels_composited, Growth::linear},
-    GrowthClaim{"pipeline", GrowingFigure::bytes, Growth::linear},
-    GrowthClaim{"pipeline", GrowingFigure::bytes_sent, Growth::linear},
-    GrowthClaim{"pipeline", GrowingFigure::pixels_composited, Growth::linear},
-    GrowthClaim{"tree", GrowingFigure::bytes, Growth::logarithmic},
-    GrowthClaim{"tree", GrowingFigure::bytes_sent, Growth::logarithmic},
-    GrowthClaim{"tree", GrowingFigure::pixels_composited, Growth::logarithmic},
-    GrowthClaim{"binary-swap", GrowingFigure::bytes, Growth::logarithmic},
-    GrowthClaim{"binary-swap", GrowingFigure::bytes_sent, Growth::hyperbolic},
-    GrowthClaim{"binary-swap", GrowingFigure::pixels_composited, Growth::hyperbolic},
-    GrowthClaim{"mesh", GrowingFigure::bytes, Growth::hyperbolic},
-    GrowthClaim{"mesh", GrowingFigure::bytes_sent, Growth::hyperbolic},
-    GrowthClaim{"mesh", GrowingFigure::pixels_composited, Growth::hyperbolic},
-    GrowthClaim{"bus", GrowingFigure::bytes, Growth::hyperbolic},
-    GrowthClaim{"bus", GrowingFigure::pixels_composited, Growth::logarithmic},
-    GrowthClaim{"bus", GrowingFigure::bytes, Growth::least_of_all},
+    GrowthClaim{"centralized", GrowingFigure::bytes, GrowthLaw::constant},
+    GrowthClaim{"centralized", GrowingFigure::bytes_sent, GrowthLaw::constant},
+    GrowthClaim{"centralized", GrowingFigure::pixels_composited, GrowthLaw::linear},
+    GrowthClaim{"pipeline", GrowingFigure::bytes, GrowthLaw::linear},
+    GrowthClaim{"pipeline", GrowingFigure::bytes_sent, GrowthLaw::linear},
+    GrowthClaim{"pipeline", GrowingFigure::pixels_composited, GrowthLaw::linear},
+    GrowthClaim{"tree", GrowingFigure::bytes, GrowthLaw::logarithmic},
+    GrowthClaim{"tree", GrowingFigure::bytes_sent, GrowthLaw::logarithmic},
+    GrowthClaim{"tree", GrowingFigure::pixels_composited, GrowthLaw::logarithmic},
+    GrowthClaim{"binary-swap", GrowingFigure::bytes, GrowthLaw::logarithmic},
+    GrowthClaim{"binary-swap", GrowingFigure::bytes_sent, GrowthLaw::hyperbolic},
+    GrowthClaim{"binary-swap", GrowingFigure::pixels_composited, GrowthLaw::hyperbolic},
+    GrowthClaim{"mesh", GrowingFigure::bytes, GrowthLaw::hyperbolic},
+    GrowthClaim{"mesh", GrowingFigure::bytes_sent, GrowthLaw::hyperbolic},
+    GrowthClaim{"mesh", GrowingFigure::pixels_composited, GrowthLaw::hyperbolic},
+    GrowthClaim{"bus", GrowingFigure::bytes, GrowthLaw::hyperbolic},
+    GrowthClaim{"bus", GrowingFigure::pixels_composited, GrowthLaw::logarithmic},
+    GrowthClaim{"bus", GrowingFigure::bytes, GrowthLaw::least_of_all},
 };
 
 double figure_of(const ComparedScheme& row, GrowingFigure figure) {
@@ -52,13 +52,13 @@ double figure_of(const ComparedScheme& row, GrowingFigure figure) {
   return 0;
 }
 
-Growth nearest_growth(double factor, int few, int many) {
+GrowthLaw nearest_growth(double factor, int few, int many) {
   const double f = static_cast<double>(many) / few;
-  const std::array<std::pair<Growth, double>, 4> candidates = {
-      {{Growth::constant, 1.0},
-       {Growth::logarithmic, std::log(many) / std::log(few)},
-       {Growth::linear, f},
-       {Growth::hyperbolic, 1 / f}}};
+  const std::array<std::pair<GrowthLaw, double>, 4> candidates = {
+      {{GrowthLaw::constant, 1.0},
+       {GrowthLaw::logarithmic, std::log(many) / std::log(few)},
+       {GrowthLaw::linear, f},
+       {GrowthLaw::hyperbolic, 1 / f}}};
   const auto distance = [&](const auto& candidate) {
     return std::abs(std::log(factor) - std::log(candidate.second));
   };
@@ -94,17 +94,17 @@ std::optional<JudgedGrowth> judge(const std::vector<ComparedScheme>& rows, const
                       many->ranks,
                       figure_of(*few, claim.figure),
                       figure_of(*many, claim.figure),
-                      Growth::constant};
+                      GrowthLaw::constant};
   if (!(result.at_few > 0) || !(result.at_many > 0)) return std::nullopt;
   result.found = nearest_growth(result.at_many / result.at_few, few->ranks, many->ranks);
-  if (claim.growth == Growth::least_of_all && is_least(rows, *many, claim.figure))
-    result.found = Growth::least_of_all;
+  if (claim.growth == GrowthLaw::least_of_all && is_least(rows, *many, claim.figure))
+    result.found = GrowthLaw::least_of_all;
   return result;
 }
 
 }  // namespace
 
-const char* name(Growth growth) {
+const char* name(GrowthLaw growth) {
   constexpr std::array<const char*, 5> kNames = {"constant", "linear", "logarithmic", "as 1/n",
                                                  "least of all"};
   return kNames[static_cast<std::size_t>(growth)];

@@ -12,8 +12,8 @@
 namespace delray::apps {
 
 // From n to m ranks: by 1, m / n, log m / log n, n / m; or no other scheme has less at m.
-enum class Growth : std::uint8_t { constant, linear, logarithmic, hyperbolic, least_of_all };
-const char* name(Growth growth);
+enum class GrowthLaw : std::uint8_t { constant, linear, logarithmic, hyperbolic, least_of_all };
+const char* name(GrowthLaw growth);
 
 // The report's figures: bytes that travel (of bus: over the bus), bytes that the busiest rank
 // sends, pixels that the busiest rank composites.
@@ -23,7 +23,7 @@ const char* name(GrowingFigure figure);  // "B", "L_B", "L_C"
 struct GrowthClaim {
   const char* scheme;  // as the table calls it
   GrowingFigure figure;
-  Growth growth;
+  GrowthLaw growth;
 };
 std::span<const GrowthClaim> growth_claims();
 
@@ -33,7 +33,7 @@ struct JudgedGrowth {
   std::string codec;
   int few = 0, many = 0;
   double at_few = 0, at_many = 0;
-  Growth found = Growth::constant;  // the nearest
+  GrowthLaw found = GrowthLaw::constant;  // the nearest
   bool is_right() const { return found == claim.growth; }
 };
 

@@ -17,18 +17,20 @@ ComparedScheme counted(const std::string& scheme, int ranks, std::uint64_t bytes
 }
 
 // The claim about all bytes of a scheme.
-Growth found_for(std::vector<ComparedScheme> rows) {
+GrowthLaw found_for(std::vector<ComparedScheme> rows) {
   const std::vector<JudgedGrowth> judged = judge_growth(rows);
   EXPECT_EQ(judged.size(), 1U);
-  return judged.empty() ? Growth::least_of_all : judged[0].found;
+  return judged.empty() ? GrowthLaw::least_of_all : judged[0].found;
 }
 
 TEST(GrowthClaims, TheNearestGrowthIsFound) {
-  EXPECT_EQ(found_for({counted("tree", 64, 1000), counted("tree", 1024, 1100)}), Growth::constant);
+  EXPECT_EQ(found_for({counted("tree", 64, 1000), counted("tree", 1024, 1100)}),
+            GrowthLaw::constant);
   EXPECT_EQ(found_for({counted("tree", 64, 600), counted("tree", 1024, 1000)}),
-            Growth::logarithmic);
-  EXPECT_EQ(found_for({counted("tree", 64, 63), counted("tree", 1024, 1023)}), Growth::linear);
-  EXPECT_EQ(found_for({counted("tree", 64, 1600), counted("tree", 1024, 90)}), Growth::hyperbolic);
+            GrowthLaw::logarithmic);
+  EXPECT_EQ(found_for({counted("tree", 64, 63), counted("tree", 1024, 1023)}), GrowthLaw::linear);
+  EXPECT_EQ(found_for({counted("tree", 64, 1600), counted("tree", 1024, 90)}),
+            GrowthLaw::hyperbolic);
 }
 
 TEST(GrowthClaims, ARightOneIsToldFromAWrongOne) {
