@@ -57,10 +57,7 @@ bool is_replicated(const RenderRequest& request) {
 
 // Whether no rank need ever have the whole scene.
 bool comes_in_parts(const RenderRequest& request) {
-  const bool is_whole = raytrace::find_distribution(request.data)->division ==
-                        raytrace::ShareOptions::Division::whole;
-  return request.engine == Engine::raytrace && !is_replicated(request) && !is_whole &&
-         has_parts(request);
+  return request.engine == Engine::raytrace && !is_replicated(request) && has_parts(request);
 }
 
 // Whether each of several ranks that share no memory may read a part of a scene's file: the engine

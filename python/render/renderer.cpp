@@ -102,10 +102,12 @@ class Renderer {
                                : apps::threads_per_rank(request_.launch, ranks_);
     std::optional<scenes::Scene> copy;
     if (scene != nullptr) copy = scene->scene;
-    prepared_ = run({threads_ * ranks_, mpi_ == nullptr}, [&](parallel::Progress& progress) {
-      if (copy) return apps::prepare(request_, std::move(*copy));
-      return apps::prepare(request_, &progress);
-    });
+    using Prepared = std::shared_ptr<const apps::Prepared>;
+    prepared_ =
+        run({threads_ * ranks_, mpi_ == nullptr}, [&](parallel::Progress& progress) -> Prepared {
+          if (copy) return apps::prepare(request_, std::move(*copy));
+          return apps::prepare(request_, &progress);
+        });
     show_warnings();
   }
 
