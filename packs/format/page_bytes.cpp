@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "packs/format/bytes.h"
-#include "packs/format/word_planes.h"
+#include "packs/word_planes.h"
 
 namespace delray::packs::internal {
 namespace {

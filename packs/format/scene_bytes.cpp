@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "packs/format/word_planes.h"
+#include "packs/word_planes.h"
 #include "scenes/colour_map.h"
 
 namespace delray::packs::internal {

@@ -1,14 +1,14 @@
 // Differences of neighbours, cut into planes of bytes, then LZ4 (Collet 2011): neighbouring
 // vertices are alike, so that the upper planes are nearly all zero, and the lowest ones are copied
 // as they are. Reading is bound by memory, since there is nothing in it but sums and moves.
-#include "packs/format/word_planes.h"
+#include "packs/word_planes.h"
 
 #include <lz4.h>
 
 #include <array>
 #include <cstring>
 
-namespace delray::packs::internal {
+namespace delray::packs {
 namespace {
 
 // Negative floats descend with their bits: turned around they ascend. Its own inverse.
@@ -82,4 +82,4 @@ bool decompress(std::span<const char> compressed, std::span<char> bytes) {
                              static_cast<int>(bytes.size())) == static_cast<int>(bytes.size());
 }
 
-}  // namespace delray::packs::internal
+}  // namespace delray::packs

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "comm/bad_message.h"
-#include "packs/format/word_planes.h"
+#include "packs/word_planes.h"
 
 namespace delray::raytrace {
 namespace {
@@ -29,8 +29,8 @@ comm::Buffer compress(const ClusterData& cluster) {
   std::vector<char> planes;
   planes.reserve(words.size() * kWord);
   for (std::size_t k = 0; k < kSequences && k < words.size(); ++k)
-    packs::internal::append_planes(words.data() + k, words.size() / kSequences, kSequences, planes);
-  const std::vector<char> compressed = packs::internal::compress(planes);
+    packs::append_planes(words.data() + k, words.size() / kSequences, kSequences, planes);
+  const std::vector<char> compressed = packs::compress(planes);
   const std::uint64_t size = packed.size();
   comm::Buffer message(sizeof(size) + compressed.size());
   std::memcpy(message.data(), &size, sizeof(size));
@@ -47,12 +47,11 @@ ClusterData decompress_cluster(std::span<const std::byte> message) {
   comm::check_message(size <= kMostExpansion * compressed.size());
   std::vector<std::uint32_t> words(words_of(size));
   std::vector<char> planes(words.size() * kWord);
-  comm::check_message(packs::internal::decompress(
+  comm::check_message(packs::decompress(
       {reinterpret_cast<const char*>(compressed.data()), compressed.size()}, planes));
   const std::size_t each = words.size() / kSequences;
   for (std::size_t k = 0; k < kSequences && each > 0; ++k)
-    packs::internal::read_planes(planes.data() + k * each * kWord, each, kSequences,
-                                 words.data() + k);
+    packs::read_planes(planes.data() + k * each * kWord, each, kSequences, words.data() + k);
   return unpack_cluster({reinterpret_cast<const std::byte*>(words.data()), size});
 }
 

@@ -100,7 +100,7 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
 TEST(CompareSchedule, RefusesWhatItCannotDo) {
   const Folder folder;
   for (const std::string arguments :
-       {"", "gen:spheres --schedule nothing", "gen:spheres --tile 20", "gen:spheres --network none",
+       {"", "gen:spheres --schedule nothing", "gen:spheres --tile -1", "gen:spheres --network none",
         "gen:spheres --integrator none", "gen:spheres --data replicated",
         "gen:spheres -o report.png"}) {
     const Ran ran = run("delray compare schedule " + arguments, folder.path());

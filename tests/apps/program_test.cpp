@@ -66,7 +66,7 @@ TEST(Program, WrongUsageIsTwo) {
                                       "render gen:spheres -o a.png --turntable 0",
                                       "render gen:spheres -o a.png --turntable 3 --frames 2",
                                       "render gen:spheres -o a.png --camera-path p.xyz --view top",
-                                      "render gen:spheres -o a.png --engine raytrace --block 20",
+                                      "render gen:spheres -o a.png --engine raytrace --block -1",
                                       "render gen:spheres -o a.png --engine raytrace --schedule x",
                                       "triangulate",
                                       "triangulate p.xyz",

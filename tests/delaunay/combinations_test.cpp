@@ -70,7 +70,7 @@ TEST(Combinations, GiveTheSameSimplicesInSpace) { expect_same_with_threads_in_tu
 // Lattices and spheres flip four to four, and put vertices on edges and facets, again and again.
 TEST(Combinations, GiveTheSameSimplicesOfEveryDistributionInSpace) {
   for (const auto& generator : point_generators()) {
-    const auto points = generator.generate(250, 3, 5).positions;
+    const auto points = generator.generate(150, 3, 5).positions;
     const Triangulation expected = expected_of(points, 3);
     for (Options options : combinations(3)) {
       if (options.split != "none" && options.split != "random") continue;

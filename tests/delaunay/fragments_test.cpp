@@ -95,7 +95,7 @@ TEST(CreatedBy, AreNotedForEverySimplexByEveryMethod) {
         if (counted > 0) {
           EXPECT_EQ(fragments, counted);
         } else {
-          EXPECT_LT(fragments, threads == 1 ? 2 : mesh.size() / 20);
+          EXPECT_LT(fragments, threads == 1 ? 2 : mesh.size() / 5);
         }
       }
     }

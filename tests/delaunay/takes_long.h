@@ -18,7 +18,7 @@ inline std::size_t size_for(std::string_view kind, std::size_t n) {
 // hard_points(); small sets show whether it is right. Coordinates "of all sizes" are numbers of
 // thousands of bits.
 inline bool takes_long(const Method& method, std::size_t points, std::string_view kind) {
-  return method.slow && points > (kind == "of all sizes" ? 60 : 300);
+  return method.slow && points > (kind == "of all sizes" ? 60 : 200);
 }
 
 }  // namespace delray::delaunay

@@ -1,4 +1,4 @@
-#include "packs/format/word_planes.h"
+#include "packs/word_planes.h"
 
 #include <gtest/gtest.h>
 

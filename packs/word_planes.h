@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace delray::packs::internal {
+namespace delray::packs {
 
 // Appends n values of 4 bytes, `stride` values apart from each other: the difference of each to the
 // one before, in the order of floats, with the sign in the lowest bit; the first bytes of all
@@ -22,4 +22,4 @@ std::vector<char> compress(std::span<const char> bytes);
 // Into exactly so many bytes. Returns whether that is what they unpack to.
 bool decompress(std::span<const char> compressed, std::span<char> bytes);
 
-}  // namespace delray::packs::internal
+}  // namespace delray::packs
