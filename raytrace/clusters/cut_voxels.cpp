@@ -174,7 +174,7 @@ std::vector<Voxel> cut_voxels(std::span<const GeometryInstance> instances, std::
               items.subspan(first, std::min<std::size_t>(most, items.size() - first));
           // A number of its own, whichever rank has it.
           const std::uint64_t key = voxel_hash(std::uint64_t{part.front().instance} << 32 |
-                                              (first_triangle + part.front().triangle));
+                                               (first_triangle + part.front().triangle));
           const std::uint32_t room = ~std::uint32_t{0} - grid.count();
           const std::uint32_t number = grid.count() + static_cast<std::uint32_t>(key % room);
           result.push_back({number, cluster_of_items(part, instances, placed, first_triangle)});
