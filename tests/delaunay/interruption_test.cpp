@@ -13,8 +13,8 @@ namespace {
 
 TEST(Interruption, EveryMethodCountsItsPointsAndStopsWhenAsked) {
   for (const int dim : {2, 3}) {
-    auto points = generate_points("uniform", dim == 2 ? 6000 : 1000, dim, 2).positions;
-    points.insert(points.end(), points.begin(), points.begin() + 500);
+    auto points = generate_points("uniform", dim == 2 ? 2000 : 400, dim, 2).positions;
+    points.insert(points.end(), points.begin(), points.begin() + 200);
     points.emplace_back(1e12, 1e12, 1e12);  // leaves the others one cell, with a grid of its own
     for (Options options : locations_and_orders(dim)) {
       for (const int threads : {1, 2}) {
