@@ -22,12 +22,11 @@
 #include <vector>
 
 #include "delaunay/cavity/hole.h"
+#include "delaunay/cavity/insert_distinct.h"
 #include "delaunay/cavity/point_space.h"
-#include "delaunay/construction/distinct_points.h"
 #include "delaunay/mesh/extract.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/mesh/stopwatch.h"
-#include "delaunay/mesh/with_threads.h"
 #include "delaunay/mesh/xorshift.h"
 #include "parallel/progress.h"
 #include "parallel/team.h"
@@ -222,6 +221,7 @@ class RegionRounds {
   }
 
   void run() {
+    Stopwatch watch;
     const auto threads = static_cast<std::size_t>(options_.threads);
     std::size_t done = 0;
     for (std::size_t next = kCoarsePerThread * threads; done < waiting_.size(); next *= 2) {
@@ -232,6 +232,7 @@ class RegionRounds {
       done = end;
     }
     while (!left_.empty()) insert_round(1);
+    subdivide_seconds_ = watch.lap();
   }
 
   Result extract_with(std::span<const std::uint32_t> rows) {
@@ -240,6 +241,7 @@ class RegionRounds {
     Result result =
         extract(std::move(shared_.mesh), rows, options_.threads, std::move(shared_.creators));
     result.statistics.synchronization = counts_;
+    result.statistics.subdivide = subdivide_seconds_;
     return result;
   }
 
@@ -334,38 +336,13 @@ class RegionRounds {
   std::vector<SimplexNumber> free_;
   std::vector<VertexNumber> waiting_, left_;
   Synchronization counts_;
+  double subdivide_seconds_ = 0;
 };
-
-template <int D>
-Result insert_by_regions(PointView<double> input, const Options& options) {
-  Stopwatch watch;
-  const DistinctOrder<D> distinct = distinct_points<D>(input);
-  const std::uint64_t n = distinct.points.size();
-  if (options.progress != nullptr) options.progress->advance(input.size() - n);
-  const double order_seconds = watch.lap();
-  Result result;
-  if (const auto first = first_simplex<D>(distinct.points)) {
-    if (options.progress != nullptr) options.progress->advance(first->size());
-    RegionRounds<D> rounds(distinct.points, *first, options);
-    rounds.run();
-    const double subdivide_seconds = watch.lap();
-    result = rounds.extract_with(std::span<const std::uint32_t>(distinct.rows));
-    result.statistics.subdivide = subdivide_seconds;
-    result.statistics.extract = watch.lap();
-  }
-  result.statistics.order = order_seconds;
-  result.triangulation.dim = D;
-  result.triangulation.distinct = n;
-  return result;
-}
 
 }  // namespace
 
 Result insert_in_regions(PointView<double> points, const Options& options) {
-  return with_threads(options.threads, [&] {
-    return options.dim == 2 ? insert_by_regions<2>(points, options)
-                            : insert_by_regions<3>(points, options);
-  });
+  return insert_distinct<RegionRounds>(points, options);
 }
 
 }  // namespace delray::delaunay::internal

@@ -22,12 +22,11 @@
 
 #include "delaunay/cavity/claims.h"
 #include "delaunay/cavity/hole.h"
+#include "delaunay/cavity/insert_distinct.h"
 #include "delaunay/cavity/point_space.h"
-#include "delaunay/construction/distinct_points.h"
 #include "delaunay/mesh/extract.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/mesh/stopwatch.h"
-#include "delaunay/mesh/with_threads.h"
 #include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 
@@ -227,34 +226,10 @@ class IndependentSets {
   Statistics seconds_;
 };
 
-template <int D>
-Result insert_sets(PointView<double> input, const Options& options) {
-  Stopwatch watch;
-  const DistinctOrder<D> distinct = distinct_points<D>(input);
-  const std::uint64_t n = distinct.points.size();
-  if (options.progress != nullptr) options.progress->advance(input.size() - n);
-  const double order_seconds = watch.lap();
-  Result result;
-  if (const auto first = first_simplex<D>(distinct.points)) {
-    if (options.progress != nullptr) options.progress->advance(first->size());
-    IndependentSets<D> sets(distinct.points, *first, options);
-    sets.run();
-    watch.lap();
-    result = sets.extract_with(std::span<const std::uint32_t>(distinct.rows));
-    result.statistics.extract = watch.lap();
-  }
-  result.statistics.order = order_seconds;
-  result.triangulation.dim = D;
-  result.triangulation.distinct = n;
-  return result;
-}
-
 }  // namespace
 
 Result insert_independent_sets(PointView<double> points, const Options& options) {
-  return with_threads(options.threads, [&] {
-    return options.dim == 2 ? insert_sets<2>(points, options) : insert_sets<3>(points, options);
-  });
+  return insert_distinct<IndependentSets>(points, options);
 }
 
 }  // namespace delray::delaunay::internal
