@@ -26,8 +26,8 @@ struct SimplifiedTerrain {
 // lie exactly on the surface. Of several rows at one place the lowest counts, as everywhere. The
 // result depends on nothing but the points. Nothing is kept of places that are all on one line.
 //
-// With several threads points are inserted in rounds: the farthest point of each triangle whose
-// insertion changes no triangle that a farther one changes. That keeps some more points, the same
+// With several threads parts of the terrain insert their own farthest points at the same time, all
+// points beyond some error before those within half of it. That keeps a few more points, the same
 // ones for every number of threads above one, and the same bound.
 //
 // O(n log n) for usual terrains, O(n) a point that is kept at worst; about 50 bytes a point.

@@ -216,8 +216,7 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
   command
       .add_option("--max-error", options.max_error,
                   "Simplify a terrain: keep just enough points for all others to be within this "
-                  "above or below the mesh, in units of z; with --threads above 1 in rounds, which "
-                  "keep some more")
+                  "above or below the mesh, in units of z; several --threads keep a few more")
       ->check(non_negative_number());
   command
       .add_option("--improve", options.improve,

@@ -6,15 +6,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <mutex>
+#include <queue>
 
 #include "delaunay/flip/flip_2d.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/predicates.h"
+#include "parallel/parallel_for.h"
 
 namespace delray::delaunay::internal {
 namespace {
+
+constexpr std::size_t kPlacesPerBlock = 512;  // some 30 microseconds
 
 // z + bound, or the next double below where that is none.
 double sum_from_below(double z, double bound) {
@@ -65,14 +71,46 @@ bool Simplification::is_beyond(SimplexNumber triangle, std::uint32_t place) cons
   return orient3d(a, b, c, q) > 0;
 }
 
-void Simplification::find_candidate(SimplexNumber triangle) {
-  Candidate best;
-  for (std::uint32_t place = first_[triangle]; place != kNoPlace; place = next_[place]) {
-    const Candidate candidate{error(triangle, place), place};
-    if (best.place != kNoPlace && !(Entry{best, 0} < Entry{candidate, 0})) continue;
-    if (is_beyond(triangle, place)) best = candidate;
+// To the list of the run, which is the last one unless that is of another triangle.
+void Simplification::add(std::vector<Run>& runs, SimplexNumber triangle, std::uint32_t place) {
+  if (runs.empty() || runs.back().triangle != triangle) {
+    runs.push_back({triangle, {}, kNoPlace, place});
   }
-  candidates_[triangle] = best;
+  Run& run = runs.back();
+  next_[place] = run.first;
+  run.first = place;
+  const Candidate candidate{error(triangle, place), place};
+  if (candidate.is_better_than(run.candidate) && is_beyond(triangle, place)) {
+    run.candidate = candidate;
+  }
+}
+
+void Simplification::keep(const std::vector<Run>& runs) {
+  for (const Run& run : runs) {
+    next_[run.last] = first_[run.triangle];
+    first_[run.triangle] = run.first;
+    Candidate& best = candidates_[run.triangle];
+    if (run.candidate.is_better_than(best)) best = run.candidate;
+  }
+}
+
+template <class AddPlaces>
+void Simplification::share_out_blocks(std::size_t n, AddPlaces&& add_places) {
+  struct Block {
+    std::size_t first;
+    std::vector<Run> runs;
+  };
+  std::mutex mutex;
+  std::vector<Block> blocks;
+  parallel::parallel_blocks(0, n, kPlacesPerBlock, [&](std::size_t first, std::size_t last) {
+    if (progress_ != nullptr) progress_->advance(0);
+    Block block{first, {}};
+    add_places(first, last, block.runs);
+    const std::scoped_lock lock(mutex);
+    blocks.push_back(std::move(block));
+  });
+  std::ranges::sort(blocks, {}, &Block::first);
+  for (const Block& block : blocks) keep(block.runs);
 }
 
 void Simplification::start(const std::vector<std::uint32_t>& corners) {
@@ -88,14 +126,17 @@ void Simplification::start(const std::vector<std::uint32_t>& corners) {
     near = walk(mesh_, places_.points, near, q, random).simplex;
     insert(corners[i], near);
   }
-  for (std::uint32_t place = 0; place < places_.points.size(); ++place) {
-    constexpr std::uint32_t kPlacesPerLook = 1024;
-    if (progress_ != nullptr && place % kPlacesPerLook == 0) progress_->advance(0);
-    if (is_kept_[place] != 0) continue;
-    near = walk(mesh_, places_.points, near, places_.points[place], random).simplex;
-    own(near, place);
-  }
-  for (SimplexNumber triangle = 0; triangle < access_.used(); ++triangle) find_candidate(triangle);
+  const auto add_places = [&](std::size_t first, std::size_t last, std::vector<Run>& runs) {
+    SimplexNumber nearby = near;
+    std::uint32_t choices = 1;
+    for (std::size_t i = first; i < last; ++i) {
+      const auto place = static_cast<std::uint32_t>(i);
+      if (is_kept_[place] != 0) continue;
+      nearby = walk(mesh_, places_.points, nearby, places_.points[place], choices).simplex;
+      add(runs, nearby, place);
+    }
+  };
+  share_out_blocks(places_.points.size(), add_places);
 }
 
 void Simplification::take_places(SimplexNumber triangle, std::uint32_t but,
@@ -120,30 +161,49 @@ void Simplification::find_star(std::uint32_t place, SimplexNumber triangle,
 
 // By turning about the vertex from where the place before was.
 void Simplification::share_out(std::uint32_t place, const std::vector<CornerNumber>& star,
-                               const std::vector<std::uint32_t>& orphans) {
+                               const std::vector<std::uint32_t>& orphans, std::vector<Run>& runs) {
   const glm::dvec2& centre = places_.points[place];
   const auto side = [&](CornerNumber end, const glm::dvec2& q) {
     const VertexNumber vertex = mesh_.vertex(end);
     return vertex == kInfiniteVertex ? 0 : orient2d(centre, places_.points[vertex], q);
   };
-  std::size_t i = 0;
-  while (mesh_.is_ghost(simplex_of(star[i]))) ++i;
-  for (const std::uint32_t orphan : orphans) {
-    const glm::dvec2& q = places_.points[orphan];
-    while (side(next_corner(star[i]), q) < 0) i = (i == 0 ? star.size() : i) - 1;
-    while (side(previous_corner(star[i]), q) > 0) i = i + 1 == star.size() ? 0 : i + 1;
-    own(simplex_of(star[i]), orphan);
+  std::size_t finite = 0;
+  while (mesh_.is_ghost(simplex_of(star[finite]))) ++finite;
+  for (const CornerNumber corner : star) candidates_[simplex_of(corner)] = {};
+  const auto add_orphans = [&](std::size_t first, std::size_t last, std::vector<Run>& added) {
+    std::size_t i = finite;
+    for (std::size_t k = first; k < last; ++k) {
+      const glm::dvec2& q = places_.points[orphans[k]];
+      while (side(next_corner(star[i]), q) < 0) i = (i == 0 ? star.size() : i) - 1;
+      while (side(previous_corner(star[i]), q) > 0) i = i + 1 == star.size() ? 0 : i + 1;
+      add(added, simplex_of(star[i]), orphans[k]);
+    }
+  };
+  if (orphans.size() > 2 * kPlacesPerBlock) {
+    return share_out_blocks(orphans.size(), add_orphans);
   }
-  for (const CornerNumber changed : star) find_candidate(simplex_of(changed));
+  runs.clear();
+  add_orphans(0, orphans.size(), runs);
+  keep(runs);
 }
 
-void Simplification::refine() {
+std::vector<Simplification::Entry> Simplification::candidates_above(double least) const {
+  std::vector<Entry> entries;
   for (SimplexNumber triangle = 0; triangle < access_.used(); ++triangle) {
-    if (candidates_[triangle].place != kNoPlace) queue_.push({candidates_[triangle], triangle});
+    const Candidate& candidate = candidates_[triangle];
+    if (candidate.place != kNoPlace && candidate.error > least) {
+      entries.push_back({candidate, triangle});
+    }
   }
-  while (!queue_.empty()) {
-    const Entry entry = queue_.top();
-    queue_.pop();
+  return entries;
+}
+
+void Simplification::refine(double least, std::size_t triangles) {
+  // With entries that no longer count.
+  std::priority_queue<Entry> queue(std::less<Entry>(), candidates_above(least));
+  while (!queue.empty() && access_.used() < triangles) {
+    const Entry entry = queue.top();
+    queue.pop();
     if (candidates_[entry.triangle] != entry.candidate) continue;
     if (progress_ != nullptr) progress_->advance();
     insert(entry.candidate.place, entry.triangle);
@@ -153,10 +213,11 @@ void Simplification::refine() {
     for (const CornerNumber corner : star_) {
       take_places(simplex_of(corner), entry.candidate.place, orphans_);
     }
-    share_out(entry.candidate.place, star_, orphans_);
+    share_out(entry.candidate.place, star_, orphans_, runs_);
     for (const CornerNumber corner : star_) {
       const SimplexNumber triangle = simplex_of(corner);
-      if (candidates_[triangle].place != kNoPlace) queue_.push({candidates_[triangle], triangle});
+      const Candidate& candidate = candidates_[triangle];
+      if (candidate.place != kNoPlace && candidate.error > least) queue.push({candidate, triangle});
     }
   }
 }
@@ -178,12 +239,21 @@ SimplifiedTerrain Simplification::result() const {
     for (unsigned k = 0; k < 3; ++k) {
       triangulation.vertices.push_back(places_.rows[mesh_.vertex(corner_of(triangle, k))]);
     }
-    for (std::uint32_t place = first_[triangle]; place != kNoPlace; place = next_[place]) {
-      // They are all within the bound, whatever rounding says.
-      result.largest_error =
-          std::max(result.largest_error, std::min(error(triangle, place), max_error_));
-    }
   }
+  // They are all within the bound, whatever rounding says.
+  const auto error_of = [&](std::size_t first, std::size_t last) {
+    double largest = 0;
+    for (std::size_t t = first; t < last; ++t) {
+      const auto triangle = static_cast<SimplexNumber>(t);
+      for (std::uint32_t place = first_[t]; place != kNoPlace; place = next_[place])
+        largest = std::max(largest, std::min(error(triangle, place), max_error_));
+    }
+    return largest;
+  };
+  constexpr std::size_t kTrianglesPerBlock = 1024;
+  result.largest_error =
+      parallel::parallel_reduce(0, access_.used(), kTrianglesPerBlock, 0.0, error_of,
+                                [](double a, double b) { return std::max(a, b); });
   return result;
 }
 

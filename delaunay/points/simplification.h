@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -23,8 +22,9 @@ struct Places {
 };
 
 // Each triangle keeps a list of the places in it and a candidate, the farthest one beyond the
-// bound. Whether a place is beyond it is an exact predicate, so rounding may affect the order of
-// insertions but never the bound; errors that overflow count as infinite.
+// bound. Loops over many places go to the threads of the caller's arena. Whether a place is beyond
+// it is an exact predicate, so rounding may affect the order of insertions but never the bound;
+// errors that overflow count as infinite.
 class Simplification {
  public:
   Simplification(Places places, double max_error, parallel::Progress* progress)
@@ -37,10 +37,10 @@ class Simplification {
   // REQUIRES: corners of the hull, at least three, in an order that is good for insertion.
   void start(const std::vector<std::uint32_t>& corners);
   // Inserts one place after the other, the farthest of all, until the bound holds.
-  void refine();
-  // Inserts places of many triangles at a time, by the threads of the caller's arena, until the
-  // bound holds; which ones does not depend on how many these are.
-  void refine_in_rounds();
+  void refine() { refine(kEverything, kMaximumSimplices); }
+  // Inserts places in many parts of the terrain at a time, by the threads of the caller's arena,
+  // until the bound holds; which ones does not depend on how many these are.
+  void refine_in_parts();
   SimplifiedTerrain result() const;
 
  private:
@@ -49,33 +49,45 @@ class Simplification {
     double error = 0;
     std::uint32_t place = kNoPlace;
     bool operator==(const Candidate&) const = default;
+    bool is_better_than(const Candidate& other) const {
+      if (place == kNoPlace || other.place == kNoPlace) return other.place == kNoPlace;
+      return error != other.error ? error > other.error : place < other.place;
+    }
   };
   struct Entry {
     Candidate candidate;
     SimplexNumber triangle;
-    bool operator<(const Entry& other) const {
-      return candidate.error != other.candidate.error ? candidate.error < other.candidate.error
-                                                      : candidate.place > other.candidate.place;
-    }
+    bool operator<(const Entry& other) const { return other.candidate.is_better_than(candidate); }
   };
+  // Places of one triangle, linked by next_, and its candidate among them.
+  struct Run {
+    SimplexNumber triangle;
+    Candidate candidate;
+    std::uint32_t first, last;
+  };
+  class Parts;  // refine_in_parts.cpp
 
-  struct Insertion;  // of a round: refine_in_rounds.cpp
+  static constexpr double kEverything = -1;  // below all errors
 
+  // Inserts the farthest place of all while its error is above `least` and so many triangles are
+  // not yet there.
+  void refine(double least, std::size_t triangles);
   void insert(std::uint32_t place, SimplexNumber triangle);
   void reserve(std::size_t triangles);
-  void own(SimplexNumber triangle, std::uint32_t place) {
-    next_[place] = first_[triangle];
-    first_[triangle] = place;
-  }
   void take_places(SimplexNumber triangle, std::uint32_t but, std::vector<std::uint32_t>& taken);
+  void add(std::vector<Run>& runs, SimplexNumber triangle, std::uint32_t place);
+  void keep(const std::vector<Run>& runs);
+  // add_places(first, last, runs) finds the triangles of the places [first, last) of n; blocks do
+  // not depend on threads.
+  template <class AddPlaces>
+  void share_out_blocks(std::size_t n, AddPlaces&& add_places);
   // Places in the triangles around a new vertex, of which `star` are its corners counterclockwise.
   void share_out(std::uint32_t place, const std::vector<CornerNumber>& star,
-                 const std::vector<std::uint32_t>& orphans);
+                 const std::vector<std::uint32_t>& orphans, std::vector<Run>& runs);
   void find_star(std::uint32_t place, SimplexNumber triangle,
                  std::vector<CornerNumber>& star) const;
-  void find_candidate(SimplexNumber triangle);
-  void fill_star(Insertion& insertion);
-  void reserve_round(std::vector<Insertion>& insertions, std::vector<SimplexNumber>& free);
+  // The candidates with an error above `least`.
+  std::vector<Entry> candidates_above(double least) const;
   glm::dvec3 at(std::uint32_t place) const {
     return {places_.points[place], places_.heights[place]};
   }
@@ -92,9 +104,9 @@ class Simplification {
   // The places in a triangle, its boundary included, that are not kept: a list for each triangle.
   std::vector<std::uint32_t> first_, next_;
   std::vector<Candidate> candidates_;  // per triangle
-  std::priority_queue<Entry> queue_;   // with entries that no longer count
   std::vector<CornerNumber> star_;
   std::vector<std::uint32_t> orphans_;
+  std::vector<Run> runs_;
 };
 
 }  // namespace delray::delaunay::internal

@@ -49,8 +49,8 @@ mpq_class exact_error(const Terrain& terrain, const Triangulation& surface, cons
   return -1;
 }
 
-void expect_within(const Terrain& terrain, double bound, int threads) {
-  const SimplifiedTerrain result = simplify_terrain(view(terrain), bound, nullptr, threads);
+// That the result is what triangulate() makes of the points that are kept.
+void expect_delaunay(const Terrain& terrain, const SimplifiedTerrain& result) {
   Terrain kept;
   for (const std::uint32_t row : result.kept) kept.push_back(terrain[row]);
   Triangulation expected = triangulate(view(kept)).triangulation;
@@ -59,6 +59,11 @@ void expect_within(const Terrain& terrain, double bound, int threads) {
   EXPECT_EQ(result.triangulation.hull_facets, expected.hull_facets);
   EXPECT_EQ(result.triangulation.distinct, triangulate(view(terrain)).triangulation.distinct);
   EXPECT_TRUE(std::ranges::is_sorted(result.kept));
+}
+
+void expect_within(const Terrain& terrain, double bound, int threads) {
+  const SimplifiedTerrain result = simplify_terrain(view(terrain), bound, nullptr, threads);
+  expect_delaunay(terrain, result);
   std::set<std::pair<double, double>> seen;
   for (const glm::dvec3& q : terrain) {
     if (!seen.insert({q.x, q.y}).second || result.triangulation.size() == 0) continue;
@@ -165,21 +170,47 @@ TEST(SimplifyTerrain, KeepsTheSamePointsWhateverTheirRows) {
   EXPECT_EQ(kept(), expected);
 }
 
+// With enough candidates for many parts.
+Terrain rough_terrain(std::uint64_t seed) {
+  Terrain terrain = lattice(150, hills);
+  std::mt19937_64 random(seed);
+  for (glm::dvec3& p : terrain) p.z += std::uniform_real_distribution<>(-0.5, 0.5)(random);
+  return terrain;
+}
+
 TEST(SimplifyTerrain, KeepsTheSamePointsWithAnyNumberOfThreadsAboveOne) {
-  const Terrain terrain = lattice(60, hills);
-  for (const double bound : {0.0, 0.02, 0.5}) {
-    const SimplifiedTerrain alone = simplify_terrain(view(terrain), bound);
-    const SimplifiedTerrain two = simplify_terrain(view(terrain), bound, nullptr, 2);
-    for (const int threads : {3, 8}) {
-      const SimplifiedTerrain more = simplify_terrain(view(terrain), bound, nullptr, threads);
-      EXPECT_EQ(more.kept, two.kept) << bound;
-      EXPECT_EQ(hash(more.triangulation), hash(two.triangulation)) << bound;
-      EXPECT_EQ(more.largest_error, two.largest_error) << bound;
+  for (const Terrain& terrain : {lattice(60, hills), rough_terrain(7)}) {
+    for (const double bound : {0.0, 0.02, 0.3, 0.5}) {
+      SCOPED_TRACE(bound);
+      const SimplifiedTerrain alone = simplify_terrain(view(terrain), bound);
+      const SimplifiedTerrain two = simplify_terrain(view(terrain), bound, nullptr, 2);
+      for (const int threads : {3, 8}) {
+        const SimplifiedTerrain more = simplify_terrain(view(terrain), bound, nullptr, threads);
+        EXPECT_EQ(more.kept, two.kept);
+        EXPECT_EQ(hash(more.triangulation), hash(two.triangulation));
+        EXPECT_EQ(more.largest_error, two.largest_error);
+      }
+      // Parts choose worse than one point after the other, but not much.
+      EXPECT_LE(two.kept.size(), alone.kept.size() + alone.kept.size() / 10 + 8);
     }
-    // Rounds choose worse than one point after the other, but not much.
-    EXPECT_LE(two.kept.size(), alone.kept.size() + alone.kept.size() / 4 + 8) << bound;
   }
-  EXPECT_THROW(simplify_terrain(view(terrain), 1, nullptr, 0), std::invalid_argument);
+  EXPECT_THROW(simplify_terrain(view(rough_terrain(1)), 1, nullptr, 0), std::invalid_argument);
+}
+
+TEST(SimplifyTerrain, PartsKeepTheBoundAndTheDelaunayTriangulation) {
+  for (const std::uint64_t seed : {1, 2}) {
+    SCOPED_TRACE(seed);
+    const Terrain terrain = rough_terrain(seed);
+    const SimplifiedTerrain result = simplify_terrain(view(terrain), 0.4, nullptr, 3);
+    expect_delaunay(terrain, result);
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 60; ++i) {
+      const glm::dvec3& q = terrain[random() % terrain.size()];
+      const mpq_class error = exact_error(terrain, result.triangulation, q);
+      ASSERT_GE(error, 0);
+      ASSERT_LE(error, 0.4);
+    }
+  }
 }
 
 TEST(SimplifyTerrain, ALineHasNoSurface) {
