@@ -62,8 +62,8 @@ void measure(const View& view, const raytrace::RenderOptions& options,
   comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
     std::optional<raytrace::SharedScene> shared;
     if (!distribution.replicated)
-      shared.emplace(
-          raytrace::SharedScene::make(communicator, view.scene, view.tracer->shader, {}));
+      shared.emplace(raytrace::SharedScene::make(communicator, view.scene, view.tracer->shader,
+                                                 raytrace::share_options(distribution, {})));
     raytrace::Renderer renderer =
         shared ? raytrace::Renderer(*shared, distribution) : raytrace::Renderer(*view.tracer);
     for (int i = 0; i <= frames; ++i) {
