@@ -41,7 +41,7 @@ class ImageLayer : public Layer {
 
   std::uint64_t pixels() const final { return image_.pixels(); }
   int format() const final { return static_cast<int>(operator_); }
-  bool empty() const final;
+  bool empty() const override;
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) final {
     return apply(range, pixels, from == Side::lower ? Action::merge_lower : Action::merge_higher);
   }

@@ -61,4 +61,16 @@ OwnedPixels compose(comm::Communicator& communicator, std::unique_ptr<Layer> lay
 // Throws std::invalid_argument for a root that does not exist, and a part without a layer.
 OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part, int root);
 
+// Pixels that are wanted on a rank.
+struct Destination {
+  PixelRange range;
+  int rank = 0;
+};
+
+// Brings pixels of all parts to several ranks, of which each owns in the end what `destinations`
+// have for it: tiles of a display to those who show them. They are the same on every rank, in the
+// same order; what no destination has is dropped. Otherwise as above.
+OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part,
+                   std::span<const Destination> destinations);
+
 }  // namespace delray::composite

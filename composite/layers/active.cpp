@@ -9,15 +9,10 @@
 #include "comm/bad_message.h"
 #include "composite/coverage.h"
 #include "composite/layers/active_pixels.h"
+#include "composite/layers/encode_active.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::composite {
-namespace {
-
-constexpr std::size_t kGroupsGrain = 4;  // groups of 4096 pixels; some ten microseconds
-
-}  // namespace
-
 template <class Colour>
 comm::Buffer ActiveLayer<Colour>::encode(PixelRange range) {
   assert(range.begin <= range.end && range.end <= this->pixels());
@@ -27,24 +22,14 @@ comm::Buffer ActiveLayer<Colour>::encode(PixelRange range) {
                           [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
                             return this->find_covered(range.begin + begin, range.begin + end, mask);
                           });
-  const std::uint64_t covered = coverage.covered();
-  comm::Buffer buffer(coverage.encoded_bytes() + covered * this->bytes_per_pixel());
-  auto* const colours = reinterpret_cast<Colour*>(coverage.encode(buffer.data()));
-  auto* const depths = reinterpret_cast<float*>(colours + covered);
-  parallel::parallel_for(0, coverage.groups(), kGroupsGrain, [&](std::size_t i) {
-    const Coverage::Group at = coverage.group(i);
-    const auto copy = [&]<class T>(const T* from, T* to) {
-      if (at.is_full()) {
-        std::copy_n(from + at.begin, at.covered, to + at.covered_before);
-      } else if (at.covered > 0) {
-        internal::compress(from + at.begin, coverage.mask(i),
-                           std::span(to + at.covered_before, at.covered));
-      }
-    };
-    copy(colour, colours);
-    if (this->has_depth()) copy(depth, depths);
-  });
-  return buffer;
+  struct View {
+    const Colour* colour;
+    const float* depth;
+  };
+  return internal::encode_active<Colour>(coverage, this->has_depth(),
+                                         [&](std::uint64_t begin, std::uint64_t /*end*/) {
+                                           return View{colour + begin, depth + begin};
+                                         });
 }
 
 template <class Colour>
@@ -57,7 +42,7 @@ std::uint64_t ActiveLayer<Colour>::apply(PixelRange range, const comm::Buffer& p
                       coverage.encoded_bytes() + covered * this->bytes_per_pixel());
   const auto* colour = reinterpret_cast<const Colour*>(pixels.data() + coverage.encoded_bytes());
   const auto* depth = reinterpret_cast<const float*>(colour + covered);
-  parallel::parallel_for(0, coverage.groups(), kGroupsGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, coverage.groups(), internal::kGroupsGrain, [&](std::size_t i) {
     const Coverage::Group at = coverage.group(i);
     const std::size_t first = range.begin + at.begin, size = at.end - at.begin;
     const typename ImageLayer<Colour>::Pixels arrived{

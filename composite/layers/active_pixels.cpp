@@ -65,25 +65,26 @@ HWY_INLINE void prefetch_element(const T* values) {
   for (std::size_t i = 0; i < 64; i += kLine) hwy::Prefetch(values + i);
 }
 
-// Pixels whose value is not `nothing`.
-template <class D, class T>
-std::uint64_t find_loop(D d, const T* values, T nothing, std::size_t size, std::uint64_t* mask) {
+// Pixels that `is_covered` says are: of vectors of values, and of single ones.
+template <class D, class T, class F>
+HWY_INLINE std::uint64_t find_loop(D d, const T* values, std::size_t size, std::uint64_t* mask,
+                                   F&& is_covered) {
   const std::size_t lanes = hn::Lanes(d);
-  const auto empty = hn::Set(d, nothing);
+  const hn::CappedTag<T, 1> one;
   std::uint64_t covered = 0;
   std::size_t i = 0;
   for (; i + 64 <= size; i += 64) {
     std::uint64_t bits = 0;
     for (std::size_t j = 0; j < 64; j += lanes) {
       std::uint8_t some[8] = {};
-      hn::StoreMaskBits(d, hn::Ne(hn::LoadU(d, values + i + j), empty), some);
+      hn::StoreMaskBits(d, is_covered(d, hn::LoadU(d, values + i + j)), some);
       bits |= std::uint64_t{some[0]} << j;
     }
     mask[i / 64] = bits;
     covered += static_cast<std::uint64_t>(std::popcount(bits));
   }
   for (; i < size; ++i) {
-    const std::uint64_t bit = values[i] != nothing ? 1 : 0;
+    const std::uint64_t bit = hn::CountTrue(one, is_covered(one, hn::LoadU(one, values + i)));
     mask[i / 64] |= bit << i % 64;
     covered += bit;
   }
@@ -91,12 +92,24 @@ std::uint64_t find_loop(D d, const T* values, T nothing, std::size_t size, std::
 }
 
 std::uint64_t find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask) {
-  return find_loop(Depths(), depth, image::kEmptyDepth, size, mask);
+  return find_loop(Depths(), depth, size, mask, [](auto d, auto values) HWY_ATTR {
+    return hn::Ne(values, hn::Set(d, image::kEmptyDepth));
+  });
 }
 
-std::uint64_t find_coloured_loop(const std::uint32_t* colour, std::size_t size,
-                                 std::uint64_t* mask) {
-  return find_loop(Codes(), colour, std::uint32_t{0}, size, mask);
+std::uint64_t find_nearer_loop(const float* depths, float depth, std::size_t size,
+                               std::uint64_t* mask) {
+  return find_loop(Depths(), depths, size, mask, [depth](auto d, auto values) HWY_ATTR {
+    return hn::Lt(values, hn::Set(d, depth));
+  });
+}
+
+// Pixels with any of these bits.
+std::uint64_t find_bits_loop(const std::uint32_t* colour, std::uint32_t bits, std::size_t size,
+                             std::uint64_t* mask) {
+  return find_loop(Codes(), colour, size, mask, [bits](auto d, auto values) HWY_ATTR {
+    return hn::Ne(hn::And(values, hn::Set(d, bits)), hn::Zero(d));
+  });
 }
 
 void compress_loop(const std::uint32_t* values, const std::uint64_t* mask, std::uint32_t* to,
@@ -263,7 +276,8 @@ HWY_AFTER_NAMESPACE();
 namespace delray::composite::internal {
 
 HWY_EXPORT(find_covered_loop);
-HWY_EXPORT(find_coloured_loop);
+HWY_EXPORT(find_nearer_loop);
+HWY_EXPORT(find_bits_loop);
 HWY_EXPORT(expand_loop);
 HWY_EXPORT(compress_loop);
 HWY_EXPORT(z_merge_any);
@@ -273,10 +287,35 @@ std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask) {
   return HWY_DYNAMIC_DISPATCH(find_covered_loop)(depth.data(), depth.size(), mask.data());
 }
 
-std::uint64_t find_coloured(std::span<const image::Rgba8> colour, GroupMask& mask) {
+std::uint64_t find_nearer(std::span<const float> depths, float depth, GroupMask& mask) {
+  assert(depths.size() <= kGroupPixels);
+  return HWY_DYNAMIC_DISPATCH(find_nearer_loop)(depths.data(), depth, depths.size(), mask.data());
+}
+
+std::uint64_t find_with_bits(std::span<const image::Rgba8> colour, image::Rgba8 bits,
+                             GroupMask& mask) {
   assert(colour.size() <= kGroupPixels);
-  return HWY_DYNAMIC_DISPATCH(find_coloured_loop)(
-      reinterpret_cast<const std::uint32_t*>(colour.data()), colour.size(), mask.data());
+  return HWY_DYNAMIC_DISPATCH(find_bits_loop)(reinterpret_cast<const std::uint32_t*>(colour.data()),
+                                              std::bit_cast<std::uint32_t>(bits), colour.size(),
+                                              mask.data());
+}
+
+std::uint64_t find_coloured(std::span<const image::Rgba8> colour, GroupMask& mask) {
+  return find_with_bits(colour, {255, 255, 255, 255}, mask);
+}
+
+std::uint64_t find_with_alpha(std::span<const image::Rgba8> colour, GroupMask& mask) {
+  return find_with_bits(colour, {0, 0, 0, 255}, mask);
+}
+
+std::uint64_t find_with_alpha(std::span<const image::RgbaF> colour, GroupMask& mask) {
+  std::uint64_t covered = 0;
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const std::uint64_t bit = colour[i].a == 0 ? 0 : 1;
+    mask[i / 64] |= bit << i % 64;
+    covered += bit;
+  }
+  return covered;
 }
 
 std::uint64_t find_coloured(std::span<const image::RgbaF> colour, GroupMask& mask) {

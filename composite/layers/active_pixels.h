@@ -24,6 +24,12 @@ std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask);
 std::uint64_t find_coloured(std::span<const image::Rgba8> colour, GroupMask& mask);
 std::uint64_t find_coloured(std::span<const image::RgbaF> colour, GroupMask& mask);
 
+// Finds pixels of somebody else's: those nearer than `depth`, and those with an alpha that is not
+// 0.
+std::uint64_t find_nearer(std::span<const float> depths, float depth, GroupMask& mask);
+std::uint64_t find_with_alpha(std::span<const image::Rgba8> colour, GroupMask& mask);
+std::uint64_t find_with_alpha(std::span<const image::RgbaF> colour, GroupMask& mask);
+
 // Copies the values of covered pixels to `to`, one after the other. `values` are those of all
 // pixels of the group; size(to) of them are covered.
 void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to);

@@ -1,6 +1,6 @@
-// Collects the pieces that ranks own on one rank: each tells its ranges and sends their pixels,
-// rank after rank. The root replaces its pixels by them. One round. Degenerate: ranks that own
-// nothing send an empty list.
+// Collects the pieces that ranks own where they are wanted: each tells its ranges and sends their
+// pixels, destination after destination. Receivers replace their pixels by them, rank after rank.
+// One round. Degenerate: ranks that own nothing of a destination send an empty list.
 #include <stdexcept>
 #include <string>
 
@@ -10,33 +10,50 @@
 namespace delray::composite {
 
 OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part, int root) {
+  const std::uint64_t pixels = part.layer == nullptr ? 0 : part.layer->pixels();
+  const Destination all{{0, pixels}, root};
+  return gather(communicator, std::move(part), std::span(&all, 1));
+}
+
+OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part,
+                   std::span<const Destination> destinations) {
   using namespace internal;
-  if (root < 0 || root >= communicator.size())
-    throw std::invalid_argument("rank " + std::to_string(root) + " does not exist");
+  for (const Destination& to : destinations) {
+    if (to.rank < 0 || to.rank >= communicator.size())
+      throw std::invalid_argument("rank " + std::to_string(to.rank) + " does not exist");
+  }
   if (part.layer == nullptr) throw std::invalid_argument("there is no layer to gather");
   communicator.mark(comm::Phase::gather, 0);
-  if (communicator.rank() != root) {
-    communicator.send(root, kTagGatherRanges,
-                      comm::Buffer::of(std::span<const PixelRange>(part.ranges)));
+  for (const Destination& to : destinations) {
+    if (to.rank == communicator.rank()) continue;
+    std::vector<PixelRange> ranges;
     for (const PixelRange& range : part.ranges) {
-      for_each_message(range, 1, [&](PixelRange piece) {
-        communicator.send(root, kTagGatherPixels, part.layer->encode(piece));
-      });
+      if (const PixelRange wanted = overlap(range, to.range); wanted.size() > 0)
+        ranges.push_back(wanted);
     }
-    return {{}, std::move(part.layer)};
-  }
-  for (int from = 0; from < communicator.size(); ++from) {
-    if (from == root) continue;
-    const comm::Buffer ranges = communicator.receive(from, kTagGatherRanges);
-    for (const PixelRange& range : ranges.as<PixelRange>()) {
+    communicator.send(to.rank, kTagGatherRanges,
+                      comm::Buffer::of(std::span<const PixelRange>(ranges)));
+    for (const PixelRange& range : ranges) {
       for_each_message(range, 1, [&](PixelRange piece) {
-        part.layer->replace(piece, communicator.receive(from, kTagGatherPixels));
+        communicator.send(to.rank, kTagGatherPixels, part.layer->encode(piece));
       });
     }
   }
-  const PixelRange all{0, part.layer->pixels()};
-  part.ranges.clear();
-  if (all.size() > 0) part.ranges.push_back(all);
+  std::vector<PixelRange> own;
+  for (const Destination& to : destinations) {
+    if (to.rank != communicator.rank()) continue;
+    for (int from = 0; from < communicator.size(); ++from) {
+      if (from == to.rank) continue;
+      const comm::Buffer ranges = communicator.receive(from, kTagGatherRanges);
+      for (const PixelRange& range : ranges.as<PixelRange>()) {
+        for_each_message(range, 1, [&](PixelRange piece) {
+          part.layer->replace(piece, communicator.receive(from, kTagGatherPixels));
+        });
+      }
+    }
+    if (to.range.size() > 0) own.push_back(to.range);
+  }
+  part.ranges = std::move(own);
   return std::move(part);
 }
 

@@ -1,0 +1,110 @@
+// Cuts ranges at the ends of parts. Degenerate: what replaces the pixels of a part that is there by
+// those of one that is missing elsewhere is an empty layer's message.
+#include "composite/joined.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "comm/bad_message.h"
+#include "composite/schemes/range.h"
+
+namespace delray::composite {
+namespace {
+
+constexpr std::size_t padded_to_8(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
+
+}  // namespace
+
+JoinedLayer::JoinedLayer(std::vector<Part> parts, int layers, MakeEmpty make_empty)
+    : parts_(std::move(parts)), begins_(1), format_(layers), make_empty_(std::move(make_empty)) {
+  for (const Part& part : parts_) begins_.push_back(begins_.back() + part.pixels);
+}
+
+Layer& JoinedLayer::existing(std::size_t part) {
+  if (parts_[part].layer == nullptr) parts_[part].layer = make_empty_(part);
+  return *parts_[part].layer;
+}
+
+// Calls f(part, the piece's pixels in the part).
+template <class F>
+void JoinedLayer::for_each_piece(PixelRange range, F&& f) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const PixelRange piece = internal::overlap(range, range_of(i));
+    if (piece.size() > 0) f(i, PixelRange{piece.begin - begins_[i], piece.end - begins_[i]});
+  }
+}
+
+// Calls f(part, pixels in the part, message of them) for what encode(range) gave.
+template <class F>
+void JoinedLayer::for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f) {
+  std::size_t at = 0;
+  for_each_piece(range, [&](std::size_t part, PixelRange piece) {
+    if (piece.size() == range.size()) return f(part, piece, pixels);
+    std::uint64_t size = 0;
+    comm::check_message(at + sizeof size <= pixels.size());
+    std::memcpy(&size, pixels.data() + at, sizeof size);
+    at += sizeof size;
+    comm::check_message(size <= pixels.size() - at);
+    f(part, piece, comm::Buffer::of(std::span<const std::byte>(pixels.data() + at, size)));
+    at += padded_to_8(size);
+  });
+}
+
+comm::Buffer JoinedLayer::encode(PixelRange range) {
+  std::vector<comm::Buffer> messages;
+  std::size_t bytes = 0;
+  for_each_piece(range, [&](std::size_t part, PixelRange piece) {
+    messages.push_back(layer(part) == nullptr ? comm::Buffer() : layer(part)->encode(piece));
+    bytes += sizeof(std::uint64_t) + padded_to_8(messages.back().size());
+  });
+  if (messages.empty()) return {};
+  if (messages.size() == 1) return std::move(messages.front());
+  comm::Buffer result(bytes);
+  std::byte* to = result.data();
+  for (const comm::Buffer& message : messages) {
+    const std::uint64_t size = message.size();
+    std::memcpy(to, &size, sizeof size);
+    to += sizeof size;
+    if (size > 0) std::memcpy(to, message.data(), size);
+    std::memset(to + size, 0, padded_to_8(size) - size);
+    to += padded_to_8(size);
+  }
+  return result;
+}
+
+std::uint64_t JoinedLayer::merge(PixelRange range, const comm::Buffer& pixels, Side from) {
+  std::uint64_t composited = 0;
+  for_each_message(range, pixels,
+                   [&](std::size_t part, PixelRange piece, const comm::Buffer& message) {
+                     if (message.empty()) return;
+                     composited += existing(part).merge(piece, message, from);
+                   });
+  return composited;
+}
+
+void JoinedLayer::replace(PixelRange range, const comm::Buffer& pixels) {
+  for_each_message(range, pixels,
+                   [&](std::size_t part, PixelRange piece, const comm::Buffer& message) {
+                     if (!message.empty()) return existing(part).replace(piece, message);
+                     if (layer(part) == nullptr) return;
+                     layer(part)->replace(piece, make_empty_(part)->encode(piece));
+                   });
+}
+
+std::uint64_t JoinedLayer::prune(PixelRange range, const comm::Buffer& pixels) {
+  std::uint64_t compared = 0;
+  for_each_message(range, pixels,
+                   [&](std::size_t part, PixelRange piece, const comm::Buffer& message) {
+                     if (message.empty() || layer(part) == nullptr) return;
+                     compared += layer(part)->prune(piece, message);
+                   });
+  return compared;
+}
+
+bool JoinedLayer::empty() const {
+  return std::all_of(parts_.begin(), parts_.end(),
+                     [](const Part& part) { return part.layer == nullptr || part.layer->empty(); });
+}
+
+}  // namespace delray::composite
