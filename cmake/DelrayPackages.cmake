@@ -1,5 +1,5 @@
-# Debian packages by CPack (scripts/package): `delray` (the program), `libdelray1` (libdelray.so.1 and the libraries
-# that are loaded on first use), `libdelray-dev` (headers, archives, CMake and pkg-config), `python3-delray`.
+# Debian packages by CPack (scripts/package): `delray` (the program), `libdelray1` (libdelray.so.1, libdelray_icet.so.1
+# and the libraries that are loaded on first use), `libdelray-dev` (headers, archives, CMake and pkg-config), `python3-delray`.
 include_guard()
 set(packages program library development)
 set(package_of_program delray)
@@ -12,7 +12,8 @@ set(about_program
     "in the plane and in space, exactly, in parallel, and beyond one memory.")
 set(about_library
     "Triangulation, compositing over MPI, and rendering with the objects of ANARI"
-    "1.0 by one header, delray.h. The program and the Python package load the"
+    "1.0 by one header, delray.h; and libdelray_icet.so.1, by which ParaView and"
+    "others composite in place of IceT. The program and the Python package load the"
     "libraries for files of pictures and rasters from this package.")
 set(about_development
     "Headers and static archives for C++20, the header for C, and packages for"
@@ -85,7 +86,8 @@ while(sections)
   set(CPACK_COMPONENT_${name}_DESCRIPTION "${text}")
 endwhile()
 # Other packages' needs of libdelray.so.1, and that the loader is told of it.
-file(WRITE ${texts}/shlibs "libdelray 1 libdelray1 (>= ${PROJECT_VERSION})\n")
+file(WRITE ${texts}/shlibs "libdelray 1 libdelray1 (>= ${PROJECT_VERSION})\n"
+     "libdelray_icet 1 libdelray1 (>= ${PROJECT_VERSION})\n")
 file(WRITE ${texts}/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${texts}/shlibs ${texts}/triggers)
 # Python's compiled halves come and go with the package.

@@ -39,10 +39,12 @@ const std::map<std::string, Names>& arrows() {
     for (const auto& [folder, ignored] : t) lower.insert(folder);
     t["c"] = lower;  // the doors: no algorithms of their own
     for (const std::string& name : kAnybody) t["c"].erase(name);
+    t["icet"] = {"composite", "image", "comm", "parallel"};
     t["apps"] = lower;
     lower.insert("apps");
     t["python"] = lower;
     lower.insert("c");
+    lower.insert("icet");
     lower.insert("python");
     t["bench"] = lower;
     lower.insert("bench");

@@ -1,0 +1,276 @@
+// One composition for all tiles: their pixels, tile after tile, are one image to the scheme
+// (composite::JoinedLayer), so that ranks with much to do in one tile share the work in others.
+//
+// Where a tile's depth is not asked for, who owns its pixels puts the background there, and only
+// colours travel to the rank that shows it, as the difference (exclusive or) to the background:
+// pixels of it are {} then, and do not travel.
+#include "icet/compose_frame.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "comm/forwarding.h"
+#include "composite/borrowed.h"
+#include "composite/codec.h"
+#include "composite/image_layer.h"
+#include "composite/joined.h"
+#include "composite/scheme.h"
+#include "icet/pixels.h"
+#include "icet/strategies.h"
+
+namespace delray::icet {
+namespace {
+
+using composite::Operator;
+using composite::OwnedPixels;
+using composite::PixelRange;
+
+// Adds the time that passes while it lives.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum), begin_(icetWallTime()) {}
+  ~Stopwatch() { sum_ += icetWallTime() - begin_; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_;
+  double begin_;
+};
+
+// Counts what a frame sends.
+class CountingCommunicator final : public comm::ForwardingCommunicator {
+ public:
+  CountingCommunicator(comm::Communicator& inner, std::uint64_t& bytes)
+      : comm::ForwardingCommunicator(inner), bytes_(bytes) {}
+  void send(int to, comm::Tag tag, comm::Buffer&& message) override {
+    bytes_ += message.size();
+    inner().send(to, tag, std::move(message));
+  }
+
+ private:
+  std::uint64_t& bytes_;
+};
+
+// Measures how long pixels are encoded and merged.
+class TimedLayer final : public composite::Layer {
+ public:
+  TimedLayer(std::unique_ptr<composite::JoinedLayer> tiles, Timings& timings)
+      : tiles_(std::move(tiles)), timings_(timings) {}
+  composite::JoinedLayer& tiles() { return *tiles_; }
+
+  std::uint64_t pixels() const override { return tiles_->pixels(); }
+  int format() const override { return tiles_->format(); }
+  bool empty() const override { return tiles_->empty(); }
+  comm::Buffer encode(PixelRange range) override {
+    const Stopwatch watch(timings_.compress);
+    return tiles_->encode(range);
+  }
+  std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, composite::Side from) override {
+    const Stopwatch watch(timings_.compare);
+    return tiles_->merge(range, pixels, from);
+  }
+  void replace(PixelRange range, const comm::Buffer& pixels) override {
+    tiles_->replace(range, pixels);
+  }
+  std::uint64_t prune(PixelRange range, const comm::Buffer& pixels) override {
+    const Stopwatch watch(timings_.compare);
+    return tiles_->prune(range, pixels);
+  }
+
+ private:
+  std::unique_ptr<composite::JoinedLayer> tiles_;
+  Timings& timings_;
+};
+
+template <class Colour>
+class FrameComposition {
+ public:
+  FrameComposition(Context& context, const TilePixels<Colour>& tiles)
+      : context_(context),
+        settings_(context.settings),
+        ranks_(*context.ranks, context.frame.timings.bytes_sent),
+        codec_(*composite::find_codec("active")),
+        how_(settings_.blends() ? Operator::over : Operator::nearest),
+        keeps_depth_(settings_.has_depth() && !settings_.blends() &&
+                     !(settings_.has_colour() && settings_.is_enabled(ICET_COMPOSITE_ONE_BUFFER))) {
+    std::vector<composite::JoinedLayer::Part> parts;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      const auto pixels = static_cast<std::uint64_t>(settings_.tiles[i].place.area());
+      parts.push_back(
+          {pixels, tiles[i] ? composite::make_borrowed(new_image(i), *tiles[i], how_) : nullptr});
+    }
+    auto joined = std::make_unique<composite::JoinedLayer>(
+        std::move(parts), static_cast<int>(how_),
+        [this](std::size_t tile) { return make_empty(tile); });
+    part_.layer = std::make_unique<TimedLayer>(std::move(joined), context.frame.timings);
+  }
+
+  void compose(bool failed) {
+    const Strategy& strategy = *find_strategy(strategies(), settings_.strategy);
+    const char* const scheme =
+        strategy.scheme != nullptr
+            ? strategy.scheme
+            : find_strategy(single_image_strategies(), settings_.single_image)->scheme;
+    composite::ComposeOptions options;
+    options.interlace = interlaces();
+    if (settings_.is_enabled(ICET_ORDERED_COMPOSITE)) {
+      options.order = context_.order;
+    } else if (!settings_.blends()) {
+      // Of equal depths the last rank's shows, as mostly with IceT.
+      options.order.resize(static_cast<std::size_t>(ranks_.size()));
+      std::iota(options.order.rbegin(), options.order.rend(), 0);
+    }
+    part_ = composite::compose(ranks_, failed ? nullptr : std::move(part_.layer), scheme, options);
+  }
+
+  void finish() {
+    const Stopwatch watch(context_.frame.timings.collect);
+    for (const PixelRange& range : part_.ranges) {
+      for_each_tile(range, [](composite::Layer& tile, PixelRange pixels) {
+        composite::settle(tile, pixels);
+      });
+    }
+    const bool collects = settings_.tiles.size() != 1 || settings_.is_enabled(ICET_COLLECT_IMAGES);
+    if (!collects) return keep_own();
+    if (!keeps_depth_) {
+      // Tiles that are missing stay so: their pixels are the background, and do not travel.
+      for (const PixelRange& range : part_.ranges) {
+        for_each_tile(range, [&](composite::Layer& tile, PixelRange pixels) {
+          auto& image = image_of(tile);
+          put_background(image, pixels, context_.frame.true_background, settings_.blends());
+          exclusive_or(image, pixels, context_.frame.true_background);
+        });
+      }
+      how_ = Operator::over;
+      for (std::size_t i = 0; i < tiles().parts(); ++i) {
+        if (composite::Layer* const layer = tiles().layer(i)) {
+          dynamic_cast<composite::ImageLayer<Colour>&>(*layer).forget_depth();
+        }
+      }
+    }
+    std::vector<composite::Destination> destinations;
+    for (std::size_t i = 0; i < settings_.tiles.size(); ++i) {
+      destinations.push_back({tiles().range_of(i), settings_.tiles[i].display});
+    }
+    part_ = composite::gather(ranks_, std::move(part_), destinations);
+    const int shown = tile_of(settings_, ranks_.rank());
+    if (shown >= 0) {
+      const auto tile = static_cast<std::size_t>(shown);
+      auto& image = image_of(tiles().existing(tile));
+      const PixelRange all{0, image.pixels()};
+      if (keeps_depth_) {
+        put_background(image, all, context_.frame.true_background, false);
+      } else {
+        exclusive_or(image, all, context_.frame.true_background);
+      }
+      show(tile, all);
+    }
+    give_back_images();
+  }
+
+ private:
+  composite::JoinedLayer& tiles() { return dynamic_cast<TimedLayer&>(*part_.layer).tiles(); }
+  static image::BasicImage<Colour>& image_of(composite::Layer& tile) {
+    return dynamic_cast<composite::ImageLayer<Colour>&>(tile).image();
+  }
+
+  // Pixels of one tile that is kept where they were merged have to be neighbours.
+  bool interlaces() const {
+    return settings_.is_enabled(ICET_INTERLACE_IMAGES) &&
+           settings_.is_enabled(ICET_COLLECT_IMAGES) && ranks_.size() > 2;
+  }
+
+  image::BasicImage<Colour> new_image(std::size_t tile) {
+    const geometry::Rect& place = settings_.tiles[tile].place;
+    return context_.pool.take(place.width(), place.height(), Colour{});
+  }
+
+  std::unique_ptr<composite::Layer> make_empty(std::size_t tile) {
+    auto image = new_image(tile);
+    image::clear(image);
+    return codec_.make(std::move(image), how_);
+  }
+
+  // Calls f(layer, pixels) for the pixels of a range, tile by tile, where there is a tile.
+  template <class F>
+  void for_each_tile(PixelRange range, F&& f) {
+    for (std::size_t i = 0; i < tiles().parts(); ++i) {
+      const PixelRange tile = tiles().range_of(i);
+      const std::uint64_t begin = std::max(range.begin, tile.begin);
+      const std::uint64_t end = std::min(range.end, tile.end);
+      if (begin < end && tiles().layer(i) != nullptr)
+        f(*tiles().layer(i), PixelRange{begin - tile.begin, end - tile.begin});
+    }
+  }
+
+  // The pixels that this rank has composited of the one tile, if any.
+  void keep_own() {
+    if (!part_.ranges.empty()) {
+      const PixelRange range{part_.ranges.front().begin, part_.ranges.back().end};
+      put_background(image_of(tiles().existing(0)), range, context_.frame.true_background,
+                     settings_.blends());
+      show(0, range);
+    }
+    give_back_images();
+  }
+
+  void show(std::size_t tile, PixelRange valid) {
+    Frame& frame = context_.frame;
+    frame.valid_tile = static_cast<int>(tile);
+    frame.valid_offset = static_cast<int>(valid.begin);
+    frame.valid_pixels = static_cast<int>(valid.size());
+    Image& result = context_.result;
+    image::BasicImage<Colour>& image = image_of(tiles().existing(tile));
+    result.width = image.width;
+    result.height = image.height;
+    result.colour_format = settings_.colour_format;
+    // Depths of blended images mean nothing, but are there where they are asked for.
+    const bool has_depth = keeps_depth_ || (settings_.has_depth() && settings_.blends());
+    result.depth_format = has_depth ? ICET_IMAGE_DEPTH_FLOAT : ICET_IMAGE_DEPTH_NONE;
+    if (!keeps_depth_ && has_depth) std::fill_n(image.depth.data(), image.pixels(), 1.0F);
+    result.planes(Colour{}) = std::move(image);
+    tiles().take_layer(tile);
+    if constexpr (std::is_same_v<Colour, image::RgbaF>) {
+      if (!result.is_rgb()) return;
+      if (result.rgb.size() != 3 * result.pixels()) {
+        result.rgb = image::Plane<float>(3 * result.pixels());
+      }
+      drop_alpha(result.floats.colour.data(), result.pixels(), result.rgb.data());
+    }
+  }
+
+  void give_back_images() {
+    for (std::size_t i = 0; i < tiles().parts(); ++i) {
+      if (tiles().layer(i) != nullptr)
+        context_.pool.give_back(std::move(image_of(*tiles().layer(i))));
+    }
+  }
+
+  Context& context_;
+  const Settings& settings_;
+  CountingCommunicator ranks_;
+  const composite::Codec& codec_;
+  Operator how_;      // of layers that are made from now on
+  bool keeps_depth_;  // the program gets depths
+  OwnedPixels part_;
+};
+
+}  // namespace
+
+template <class Colour>
+void compose_frame(Context& context, const TilePixels<Colour>& tiles, bool failed) {
+  FrameComposition<Colour> composition(context, tiles);
+  composition.compose(failed);
+  composition.finish();
+}
+
+template void compose_frame(Context&, const TilePixels<image::Rgba8>&, bool);
+template void compose_frame(Context&, const TilePixels<image::RgbaF>&, bool);
+
+}  // namespace delray::icet

@@ -1,0 +1,123 @@
+// Loops over pixels, written so that the compiler makes vectors of them: selections without
+// branches.
+#include "icet/pixels.h"
+
+#include <algorithm>
+#include <array>
+
+namespace delray::icet {
+namespace {
+
+using image::Rgba8;
+using image::RgbaF;
+
+image::RgbaF as(const glm::vec4& colour, RgbaF /*type*/) {
+  return {colour.r, colour.g, colour.b, colour.a};
+}
+Rgba8 as(const glm::vec4& colour, Rgba8 /*type*/) { return as_bytes(colour); }
+
+std::uint32_t* words(Rgba8* colour) { return reinterpret_cast<std::uint32_t*>(colour); }
+RgbaF* words(RgbaF* colour) { return colour; }
+
+// value / 255, rounded; exact for products of two bytes.
+unsigned divided_by_255(unsigned value) {
+  value += 128;
+  return (value + (value >> 8)) >> 8;
+}
+
+// As image::blend_back does it, of one colour behind all pixels.
+void blend_over(Rgba8* pixels, std::size_t size, Rgba8 behind) {
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(pixels);
+  const std::uint8_t back[4] = {behind.r, behind.g, behind.b, behind.a};
+  for (std::size_t i = 0; i < size; ++i) {
+    const unsigned through = 255U - bytes[4 * i + 3];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const unsigned sum = bytes[4 * i + k] + divided_by_255(back[k] * through);
+      bytes[4 * i + k] = static_cast<std::uint8_t>(std::min(sum, 255U));
+    }
+  }
+}
+
+void blend_over(RgbaF* pixels, std::size_t size, RgbaF behind) {
+  for (std::size_t i = 0; i < size; ++i) {
+    RgbaF& pixel = pixels[i];
+    const float through = 1.0F - pixel.a;
+    pixel.r += behind.r * through;
+    pixel.g += behind.g * through;
+    pixel.b += behind.b * through;
+    pixel.a += behind.a * through;
+  }
+}
+
+void fill_empty(std::uint32_t* colour, float* depth, std::size_t size, std::uint32_t background) {
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool empty = depth[i] == image::kEmptyDepth;
+    colour[i] = empty ? background : colour[i];
+    depth[i] = empty ? 1 : depth[i];
+  }
+}
+
+void fill_empty(RgbaF* colour, float* depth, std::size_t size, RgbaF background) {
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool empty = depth[i] == image::kEmptyDepth;
+    colour[i] = empty ? background : colour[i];
+    depth[i] = empty ? 1 : depth[i];
+  }
+}
+
+std::uint32_t as_word(Rgba8 colour) { return word_of(colour); }
+RgbaF as_word(RgbaF colour) { return colour; }
+
+}  // namespace
+
+Rgba8 as_bytes(const glm::vec4& colour) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(255 * std::clamp(value, 0.0F, 1.0F));
+  };
+  return {byte(colour.r), byte(colour.g), byte(colour.b), byte(colour.a)};
+}
+
+template <class Colour>
+void put_background(image::BasicImage<Colour>& image, composite::PixelRange range,
+                    const glm::vec4& background, bool blends) {
+  const Colour behind = as(background, Colour{});
+  Colour* const colour = image.colour.data() + range.begin;
+  if (blends) {
+    if (!(behind == Colour{})) blend_over(colour, range.size(), behind);
+  } else {
+    fill_empty(words(colour), image.depth.data() + range.begin, range.size(), as_word(behind));
+  }
+}
+
+template <class Colour>
+void exclusive_or(image::BasicImage<Colour>& image, composite::PixelRange range,
+                  const glm::vec4& background) {
+  constexpr std::size_t kWords = sizeof(Colour) / sizeof(std::uint32_t);
+  const Colour behind = as(background, Colour{});
+  if (behind == Colour{}) return;
+  const auto bits = std::bit_cast<std::array<std::uint32_t, kWords>>(behind);
+  auto* const words = reinterpret_cast<std::uint32_t*>(image.colour.data());
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    for (std::size_t k = 0; k < kWords; ++k) words[i * kWords + k] ^= bits[k];
+  }
+}
+
+template void put_background(image::Image8&, composite::PixelRange, const glm::vec4&, bool);
+template void put_background(image::ImageF&, composite::PixelRange, const glm::vec4&, bool);
+
+template void exclusive_or(image::Image8&, composite::PixelRange, const glm::vec4&);
+template void exclusive_or(image::ImageF&, composite::PixelRange, const glm::vec4&);
+
+void add_alpha(const float* rgb, std::size_t pixels, RgbaF* to) {
+  for (std::size_t i = 0; i < pixels; ++i, rgb += 3) to[i] = {rgb[0], rgb[1], rgb[2], 1};
+}
+
+void drop_alpha(const RgbaF* colour, std::size_t pixels, float* rgb) {
+  for (std::size_t i = 0; i < pixels; ++i, rgb += 3) {
+    rgb[0] = colour[i].r;
+    rgb[1] = colour[i].g;
+    rgb[2] = colour[i].b;
+  }
+}
+
+}  // namespace delray::icet
