@@ -1,12 +1,12 @@
-// Corners are read into the mesh's triangles; an array by position finds the first corner of each.
+// Corners are read into the mesh's triangles, and vertices are numbered by their first corners.
 #include "scenes/files/obj_triangles.h"
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 
 #include "parallel/grow.h"
 #include "parallel/parallel_for.h"
+#include "scenes/geometry/number_by_use.h"
 
 namespace delray::scenes::internal {
 namespace {
@@ -62,48 +62,6 @@ void put_in_place(std::vector<std::uint32_t>& number, std::size_t used, Mesh& me
   if (!mesh.colours.empty()) mesh.colours.resize(used);
 }
 
-// Numbers vertices by their first corners and drops those that are none.
-void number_by_first_corner(Mesh& mesh) {
-  constexpr std::size_t kBlock = 1 << 14;  // triangles: some ten microseconds
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
-  parallel::parallel_for(0, mesh.triangles.size(), kBlock, [&](std::size_t t) {
-    for (int k = 0; k < 3; ++k) {
-      const auto corner = static_cast<std::uint32_t>(3 * t) + static_cast<std::uint32_t>(k);
-      std::atomic_ref<std::uint32_t> first(number[mesh.triangles[t][k]]);
-      std::uint32_t held = first.load(std::memory_order_relaxed);
-      while (corner < held &&
-             !first.compare_exchange_weak(held, corner, std::memory_order_relaxed)) {
-      }
-    }
-  });
-  // How many first corners there are before each block. A vertex that has its new number, which is
-  // below its first corner, is nobody's first any more.
-  const std::size_t count = mesh.triangles.size(), blocks = (count + kBlock - 1) / kBlock;
-  std::vector<std::uint32_t> before(blocks + 1, 0);
-  const auto for_first_corners = [&](std::size_t block, auto&& f) {
-    for (std::size_t t = block * kBlock; t < std::min(count, (block + 1) * kBlock); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        std::atomic_ref<std::uint32_t> first(number[mesh.triangles[t][k]]);
-        if (first.load(std::memory_order_relaxed) == 3 * t + static_cast<std::size_t>(k)) f(first);
-      }
-    }
-  };
-  parallel::parallel_for(0, blocks, 1, [&](std::size_t b) {
-    std::uint32_t firsts = 0;
-    for_first_corners(b, [&](auto&) { ++firsts; });
-    before[b + 1] = firsts;
-  });
-  std::partial_sum(before.begin(), before.end(), before.begin());
-  parallel::parallel_for(0, blocks, 1, [&](std::size_t b) {
-    std::uint32_t next = before[b];
-    for_first_corners(b, [&](auto& first) { first.store(next++, std::memory_order_relaxed); });
-  });
-  parallel::parallel_for(0, count, kBlock, [&](std::size_t t) {
-    for (int k = 0; k < 3; ++k) mesh.triangles[t][k] = number[mesh.triangles[t][k]];
-  });
-  put_in_place(number, before.back(), mesh);
-}
-
 }  // namespace
 
 bool read_obj_triangles(ObjText& text, Mesh& mesh) {
@@ -114,7 +72,8 @@ bool read_obj_triangles(ObjText& text, Mesh& mesh) {
     splats += range.splats;
   }
   const std::uint64_t faces = before.back();
-  if (faces == 0 || splats > 0 || faces > kNone / 3 || text.all()[1] > 0 || text.all()[2] > 0)
+  if (faces == 0 || splats > 0 || faces > kMostNumberedTriangles || text.all()[1] > 0 ||
+      text.all()[2] > 0)
     return false;
   ObjVertices& vertices = text.vertices();
   text.source().require_memory(faces * sizeof(glm::uvec3) +
@@ -129,7 +88,9 @@ bool read_obj_triangles(ObjText& text, Mesh& mesh) {
   mesh.triangles = std::move(triangles);
   mesh.positions = std::move(vertices.positions);
   mesh.colours = std::move(vertices.colours);
-  number_by_first_corner(mesh);
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+  const std::size_t used = number_by_first_corner(mesh.triangles, number);
+  put_in_place(number, used, mesh);
   return true;
 }
 

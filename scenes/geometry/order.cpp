@@ -13,6 +13,7 @@
 #include <span>
 
 #include "parallel/parallel_for.h"
+#include "scenes/geometry/number_by_use.h"
 
 namespace delray::scenes::internal {
 namespace {
@@ -138,21 +139,15 @@ void reorder(const std::vector<std::uint32_t>& old_number, std::vector<Value>& v
   values = std::move(result);
 }
 
+// Those that no triangle has come last.
 void number_vertices_as_used(Mesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone), old_number;
-  old_number.reserve(number.size());
-  for (glm::uvec3& triangle : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      std::uint32_t& vertex = triangle[k];
-      if (number[vertex] == kNone) {
-        number[vertex] = static_cast<std::uint32_t>(old_number.size());
-        old_number.push_back(vertex);
-      }
-      vertex = number[vertex];
-    }
-  }
-  for (std::uint32_t i = 0; i < number.size(); ++i)
-    if (number[i] == kNone) old_number.push_back(i);
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone), old_number(number.size());
+  auto next = static_cast<std::uint32_t>(number_by_first_corner(mesh.triangles, number));
+  if (next < number.size())
+    for (std::uint32_t& n : number) n = n == kNone ? next++ : n;
+  parallel::parallel_for(0, number.size(), kGrain, [&](std::size_t v) {
+    old_number[number[v]] = static_cast<std::uint32_t>(v);
+  });
   renumber_vertices(old_number, mesh);
 }
 
@@ -184,9 +179,10 @@ void order_for_locality(Mesh& mesh) {
   // Not worthwhile either where something is not a number.
   if (!(after.box < kWorthwhile * before.box)) return;
   std::vector<glm::uvec3> triangles(places.size());
-  for (std::size_t t = 0; t < places.size(); ++t) triangles[t] = mesh.triangles[places[t].triangle];
+  parallel::parallel_for(0, places.size(), kGrain,
+                         [&](std::size_t t) { triangles[t] = mesh.triangles[places[t].triangle]; });
   mesh.triangles = std::move(triangles);
-  number_vertices_as_used(mesh);
+  if (mesh.triangles.size() <= kMostNumberedTriangles) number_vertices_as_used(mesh);
 }
 
 }  // namespace delray::scenes::internal

@@ -85,6 +85,27 @@ TEST(Order, BringsNeighboursTogetherAndKeepsEveryTriangle) {
   EXPECT_LT(sum / static_cast<double>(mesh.positions.size()), 4);
 }
 
+TEST(Order, NumbersVerticesAsTheyAreUsed) {
+  Mesh mesh = shuffled_grid(150, 7);  // enough that several blocks are numbered at a time
+  mesh.triangles[5].z = mesh.triangles[5].x;
+  mesh.triangles[9].y = mesh.triangles[9].z = mesh.triangles[9].x;
+  mesh.positions.emplace_back(1, 1, 1);
+  mesh.positions.emplace_back(2, 2, 2);
+  mesh.uvs.resize(mesh.positions.size());
+  mesh.uvs2.resize(mesh.positions.size());
+  order_for_locality(mesh);
+  std::uint32_t used = 0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_LE(t[k], used);
+      used += t[k] == used ? 1 : 0;
+    }
+  }
+  ASSERT_GE(mesh.positions.size(), used + 2);
+  EXPECT_EQ(mesh.positions.end()[-2], glm::vec3(1, 1, 1));
+  EXPECT_EQ(mesh.positions.end()[-1], glm::vec3(2, 2, 2));
+}
+
 TEST(Order, IsTheSameTheSecondTime) {
   Mesh mesh = shuffled_grid(40, 2);
   order_for_locality(mesh);
