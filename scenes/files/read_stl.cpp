@@ -9,8 +9,8 @@
 
 #include "parallel/grow.h"
 #include "scenes/files/for_each_block.h"
-#include "scenes/files/growth_watch.h"
 #include "scenes/files/readers.h"
+#include "scenes/files/stl_text.h"
 #include "scenes/files/vertex_values.h"
 #include "scenes/geometry/origin.h"
 #include "scenes/geometry/weld.h"
@@ -21,47 +21,6 @@ namespace {
 constexpr std::size_t kStlHeader = 84, kFacet = 50;  // bytes
 
 constexpr std::size_t kFacetsPerBlock = 1 << 12;  // some ten microseconds, and in the cache
-
-// Adds the triangle of the last three of `corners`.
-void add_triangle(std::size_t corners, Mesh& mesh) {
-  const auto last = static_cast<std::uint32_t>(corners);
-  mesh.triangles.emplace_back(last - 3, last - 2, last - 1);
-}
-
-Scene read_text_stl(const Source& source, const files::FileBytes& bytes) {
-  Mesh mesh;
-  std::vector<glm::dvec3> places;
-  std::string buffer;
-  Lines lines(bytes.read(0, bytes.size(), buffer));
-  GrowthWatch watch(source);
-  std::string_view line;
-  int vertices = 0;
-  bool ended = false;
-  while (lines.next(line)) {
-    watch.step();
-    Words words(line);
-    const std::string_view key = words.next();
-    if (key == "vertex") {
-      places.push_back(read_coordinates<3>(source, lines, words));
-      ++vertices;
-    } else if (key == "facet") {
-      vertices = 0;
-    } else if (key == "endfacet") {
-      if (vertices != 3) {
-        source.fail(lines.place(),
-                    "the facet has " + std::to_string(vertices) + " vertices, not 3");
-      }
-      add_triangle(places.size(), mesh);
-    } else if (key == "solid" || key == "endsolid") {
-      ended = key == "endsolid";
-    }
-  }
-  if (!ended) source.fail(lines.place(), "the file ends before its endsolid");
-  source.require_memory(places.size() * sizeof(glm::vec3));
-  const glm::dvec3 origin = origin_of(box_of(places));
-  mesh.positions = relative_to(origin, places);
-  return scene_of(std::move(mesh), origin);
-}
 
 // Two bytes of a facet. REQUIRES: 50 bytes.
 std::uint16_t colour_code(const char* facet) {
@@ -162,7 +121,7 @@ Scene read_facets(const Source& source) {
     }
   }
   if (!start.starts_with("solid")) source.fail("", "this is not an STL file");
-  return read_text_stl(source, bytes);
+  return read_stl_text(source, bytes);
 }
 
 }  // namespace
