@@ -13,7 +13,7 @@ namespace delray::packs {
 
 // The bytes that a file of packs begins with, and the version of the format.
 inline constexpr char kMagic[8] = {'D', 'E', 'L', 'R', 'A', 'Y', 'P', 'K'};
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 
 // What is written besides what was given.
 struct WriteOptions {

@@ -112,6 +112,13 @@ struct Follower {
   glm::dvec3 centre{0.0};  // of an instance: its mesh is relative to this
 };
 
+// How a mesh moves, in any animation.
+enum class MeshMotion : std::uint8_t {
+  still,     // neither it nor its instances change
+  rigid,     // instances of it are moved, its vertices stay
+  deforming  // its vertices change
+};
+
 // All that moves in a scene; nothing where there are no nodes.
 struct Animations {
   std::vector<AnimatedNode> nodes;
@@ -119,6 +126,9 @@ struct Animations {
   std::vector<Skin> skins;
   std::vector<DeformedMesh> meshes;
   std::vector<Follower> instances, lights, cameras;  // that some animation moves
+  // By mesh, of a scene that was packed without its animations, so that rays meet it with the same
+  // roundings; empty: as the members above say.
+  std::vector<MeshMotion> motions;
 
   bool empty() const { return nodes.empty(); }
 };

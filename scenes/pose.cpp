@@ -129,6 +129,7 @@ Movement pose(Scene& scene, const Pose& pose) {
 }
 
 std::vector<MeshMotion> mesh_motions(const Scene& scene) {
+  if (!scene.animations.motions.empty()) return scene.animations.motions;
   std::vector<MeshMotion> motions(scene.meshes.size(), MeshMotion::still);
   for (const Follower& follower : scene.animations.instances)
     motions[scene.instances[follower.number].mesh] = MeshMotion::rigid;

@@ -36,13 +36,7 @@ struct Movement {
 // REQUIRES: the animation is kNone or one of the scene's.
 Movement pose(Scene& scene, const Pose& pose);
 
-// How renderers should hold a mesh, whatever animation is shown.
-enum class MeshMotion : std::uint8_t {
-  still,     // neither it nor its instances change
-  rigid,     // instances of it are moved, its vertices stay
-  deforming  // its vertices change
-};
-// By mesh. O(meshes + instances).
+// How renderers should hold each mesh, whatever animation is shown. O(meshes + instances).
 std::vector<MeshMotion> mesh_motions(const Scene& scene);
 
 // The number of the animation of this name or, where none has it, with this number; nothing

@@ -9,6 +9,7 @@
 
 #include "packs/word_planes.h"
 #include "scenes/colour_map.h"
+#include "scenes/pose.h"
 
 namespace delray::packs::internal {
 namespace {
@@ -86,6 +87,13 @@ void plain_fields(Bytes& b, Scene& scene) {
   b.value(scene.origin);
   b.flag(scene.z_up);
   b.value(scene.framed);
+}
+
+void read_motions(ByteReader& from, std::size_t meshes, std::vector<scenes::MeshMotion>& motions) {
+  from.array(motions);
+  if (!motions.empty() && motions.size() != meshes) from.fail("meshes have no motions");
+  if (std::ranges::any_of(motions, [](auto m) { return m > scenes::MeshMotion::deforming; }))
+    from.fail("there is no motion of that number");
 }
 
 // What colours tell: whether they do, then 0 for classes, 1 for grey, else 2 and the number of the
@@ -304,6 +312,7 @@ void write_scene(const scenes::Scene& scene, ByteWriter& to) {
     for (const auto& value : values) fields(value);
   };
   plain_fields(to, scene);
+  to.array(scenes::mesh_motions(scene));
   write_scale(scene.colour_scale, to);
   list(scene.materials, [&](const auto& m) { material_fields(to, m); });
   list(scene.lights, [&](const auto& l) { light_fields(to, l); });
@@ -323,6 +332,7 @@ void read_scene(ByteReader& from, std::size_t meshes, const files::MemoryBudget&
     }
   };
   plain_fields(from, scene);
+  read_motions(from, meshes, scene.animations.motions);
   read_scale(from, scene.colour_scale);
   list(scene.materials, [&](auto& m) { material_fields(from, m); });
   list(scene.lights, [&](auto& l) { light_fields(from, l); });

@@ -11,8 +11,8 @@
 
 namespace delray::packs::internal {
 
-// Instances, materials, textures, lights, environment, cameras and what else is no mesh. Texels are
-// compressed in blocks.
+// Instances, materials, textures, lights, environment, cameras and what else is no mesh; of
+// animations only how meshes move. Texels are compressed in blocks.
 void write_scene(const scenes::Scene& scene, ByteWriter& to);
 // Throws FileError for what is no scene of so many meshes: numbers that are out of range,
 // transforms that are not finite; FileError (memory) for textures that do not fit.

@@ -43,6 +43,7 @@ std::vector<GeometryInstance> instances_of(const packs::PackReader& pack,
                                            const shading::Shader& shader, bool share_meshes) {
   scenes::Scene extents;
   extents.instances = scene.instances;
+  extents.animations.motions = scene.animations.motions;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     scenes::Mesh& mesh = extents.meshes.emplace_back();
     mesh.shape = scene.meshes[m].shape;
@@ -130,6 +131,8 @@ ClusterData PackedClusters::read(std::uint32_t cluster, const shading::Shader& s
   scene.meshes.push_back(mesh_of(run));
   for (const std::uint32_t i : placed)
     scene.instances.push_back({0, scene_.instances[i].transform});
+  if (const auto& motions = scene_.animations.motions; !motions.empty())
+    scene.animations.motions = {motions[run.mesh]};
   std::vector<GeometryInstance> instances = make_instances(scene, shader, share_meshes_);
   for (std::size_t i = 0; i < placed.size(); ++i)
     instances[i].transform_scale = instances_[placed[i]].transform_scale;
