@@ -63,6 +63,8 @@ void share_vertices(RTCGeometry geometry, const GeometryInstance& instance,
     triangles.copy.assign(positions, positions + size);
     positions = triangles.copy.data();
   }
+  triangles.positions = positions;
+  triangles.corners = instance.mesh->triangles.data();
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
                              sizeof(glm::vec3), size);
 }
@@ -152,6 +154,7 @@ void attach(EmbreeScene::State& state, unsigned number, const GeometryInstance& 
   own.attached = true;
   if (instance.instanced) {
     own.mesh = instance.mesh_number;
+    own.to_world = instance.to_world;
     attach_instance(state, number, instance);
   } else {
     own.mesh = kMiss;
@@ -210,6 +213,7 @@ void EmbreeScene::move(std::span<const std::uint32_t> moved, std::span<const std
   const std::uint64_t before = state.common.memory();
   for (const std::uint32_t i : moved) {
     if (!state.instances[i].attached) continue;
+    state.instances[i].to_world = instances[i].to_world;
     RTCGeometry geometry = rtcGetGeometry(state.top.get(), i);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &instances[i].to_world);
     rtcCommitGeometry(geometry);

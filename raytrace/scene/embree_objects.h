@@ -49,6 +49,8 @@ struct EmbreeScene::State {
   // Data of triangles that Embree refers to beside the mesh.
   struct Triangles {
     std::vector<glm::vec3> copy = {};  // of positions that were unreadable
+    const glm::vec3* positions = nullptr;
+    const glm::uvec3* corners = nullptr;
     std::shared_ptr<const std::vector<std::uint64_t>> opaque = {};
     Splats splats = {};  // instead of triangles
   };
@@ -58,7 +60,8 @@ struct EmbreeScene::State {
   };
   struct Instance {
     Triangles triangles = {};  // where it has a mesh of its own
-    std::uint32_t mesh = 0;
+    std::uint32_t mesh = 0;    // otherwise; kMiss: there is none
+    glm::mat4x3 to_world{1.0F};
     bool attached = false;
   };
   std::vector<Mesh> meshes = {};         // element i: of mesh i where it is shared

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <random>
 #include <string>
@@ -127,8 +128,9 @@ TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
         numbers[to].push_back(t);
         part[to].triangles.push_back(lattice.triangles[t]);
       }
+      std::deque<scenes::Scene> kept;  // tracers refer to them
       const auto tracer_of = [&](const scenes::Mesh& mesh) {
-        scenes::Scene scene;
+        scenes::Scene& scene = kept.emplace_back();
         add(scene, mesh);
         if (instanced) scene.instances.push_back({0, placed(1, {0, 0, -7})});
         BuildOptions options;
