@@ -65,7 +65,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"apps/replay", {"options", "terminal"}},
     {"apps/triangulate", {"input", "options", "output", "terminal"}},
     {"apps/verify", {"input", "options", "terminal"}},
-    {"apps/view", {"options", "render", "report"}},
+    {"apps/view", {"input", "options", "render", "report"}},
     {"apps/compare", {"input", "options", "render", "report", "terminal"}},
     {"comm/in_process", {"transport"}},
     {"comm/mpi", {"transport"}},

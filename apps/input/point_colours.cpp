@@ -50,6 +50,10 @@ std::string class_name(unsigned code) {
                      code < kNames.size() ? kNames[code] : "");
 }
 
+std::string return_name(unsigned returns) {
+  return fmt::format("{} of {}", returns & 15U, returns >> 4);
+}
+
 // Blue the only one, from green to red the first to the last of several.
 glm::vec3 return_colour(unsigned returns) {
   const unsigned number = returns & 15U, count = returns >> 4;
@@ -62,7 +66,11 @@ glm::vec3 return_colour(unsigned returns) {
 
 const std::array kAttributes = {
     PointAttribute{"rgb", "colours", [](const Cloud& points) { return !points.colours.empty(); },
-                   nullptr, nullptr, own_colour, [](const AttributeValues&) { return Scale(); }},
+                   nullptr, nullptr, own_colour, [](const AttributeValues&) { return Scale(); },
+                   [](const Cloud& points, std::size_t i) {
+                     const glm::u8vec4& c = points.colours[i];
+                     return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b);
+                   }},
     PointAttribute{"intensity", "intensity",
                    [](const Cloud& points) { return !points.intensity.empty(); },
                    [](const Cloud& points, std::size_t i) { return points.intensity[i]; }, nullptr,
@@ -73,17 +81,21 @@ const std::array kAttributes = {
                                                 all.range.second * all.unit,
                                                 scenes::brightness,
                                                 {}};
-                   }},
-    PointAttribute{"classification", "classification",
-                   [](const Cloud& points) { return !points.classification.empty(); }, nullptr,
-                   [](const Cloud& points, std::size_t i) { return points.classification[i]; },
-                   [](const Cloud& points, std::size_t i, const AttributeValues&) {
-                     return glm::vec4(scenes::classification_colour(points.classification[i]),
-                                      1.0F);
                    },
-                   [](const AttributeValues& all) {
-                     return classes_of(all, "class", class_name, scenes::classification_colour);
+                   [](const Cloud& points, std::size_t i) {
+                     return fmt::format("{:.6g}", points.intensity[i] * points.intensity_unit);
                    }},
+    PointAttribute{
+        "classification", "classification",
+        [](const Cloud& points) { return !points.classification.empty(); }, nullptr,
+        [](const Cloud& points, std::size_t i) { return points.classification[i]; },
+        [](const Cloud& points, std::size_t i, const AttributeValues&) {
+          return glm::vec4(scenes::classification_colour(points.classification[i]), 1.0F);
+        },
+        [](const AttributeValues& all) {
+          return classes_of(all, "class", class_name, scenes::classification_colour);
+        },
+        [](const Cloud& points, std::size_t i) { return class_name(points.classification[i]); }},
     PointAttribute{
         "returns", "return numbers", [](const Cloud& points) { return !points.returns.empty(); },
         nullptr, [](const Cloud& points, std::size_t i) { return points.returns[i]; },
@@ -91,14 +103,14 @@ const std::array kAttributes = {
           return glm::vec4(return_colour(points.returns[i]), 1.0F);
         },
         [](const AttributeValues& all) {
-          return classes_of(
-              all, "return",
-              [](unsigned returns) { return fmt::format("{} of {}", returns & 15U, returns >> 4); },
-              return_colour);
-        }},
+          return classes_of(all, "return", return_name, return_colour);
+        },
+        [](const Cloud& points, std::size_t i) { return return_name(points.returns[i]); }},
 };
 
 }  // namespace
+
+std::span<const PointAttribute> point_attributes() { return kAttributes; }
 
 const PointAttribute* find_point_attribute(std::string_view name) {
   const auto found = std::ranges::find(kAttributes, name, &PointAttribute::name);

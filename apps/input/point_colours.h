@@ -1,4 +1,5 @@
-// Colours that the attributes of points give them, for all at once or in parts.
+// Attributes of points, as texts and as the colours that they give them, for all at once or in
+// parts.
 #pragma once
 
 #include <array>
@@ -6,6 +7,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -32,7 +35,10 @@ struct PointAttribute {
   glm::vec4 (*colour)(const delaunay::PointCloud& points, std::size_t i,
                       const AttributeValues& all);
   std::optional<scenes::ColourScale> (*scale)(const AttributeValues& all);
+  std::string (*text)(const delaunay::PointCloud& points, std::size_t i);  // as people read it
 };
+
+std::span<const PointAttribute> point_attributes();
 
 // Null for a name of anything else.
 const PointAttribute* find_point_attribute(std::string_view name);

@@ -11,9 +11,9 @@
 #include <filesystem>
 
 #include "apps/input/colour_by.h"
+#include "apps/input/coloured_points.h"
 #include "apps/input/geographic.h"
 #include "apps/input/point_shape.h"
-#include "apps/input/relief.h"
 #include "apps/input/show_as.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
@@ -47,29 +47,6 @@ bool has_elements(const std::string& path) {
   std::error_code error;
   return std::filesystem::is_regular_file(std::filesystem::path(path).replace_extension(".ele"),
                                           error);
-}
-
-void set_up(const SceneInput& input, scenes::Scene& scene) {
-  if (!input.up.empty()) scene.z_up = input.up == "z";
-}
-
-// The points as vertices of the triangulation's triangles, coloured.
-scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& points,
-                       const delaunay::Triangulation& triangulation) {
-  const Inliers inliers = find_inliers(points);
-  check_reach(input, points.positions, inliers.box.centre());
-  warn_of_outliers(input, inliers, points.size());
-  scenes::Scene scene = relief(points, triangulation, inliers, input.exaggeration);
-  set_up(input, scene);
-  colour_by(scene, colouring(input, points, triangulation.size() == 0), &points);
-  if (scenes::ColourScale* const scale = scene.colour_scale ? &*scene.colour_scale : nullptr;
-      scale != nullptr && scale->title == "height") {
-    const auto bottom = static_cast<float>(scene.origin.z);
-    const auto stretched = static_cast<float>(input.exaggeration);
-    for (float* const end : {&scale->low, &scale->high})
-      *end = bottom + (*end - bottom) / stretched;
-  }
-  return scene;
 }
 
 // Why points have no triangulation over x and y.
@@ -110,22 +87,25 @@ const ShowAs& shown_as(const SceneInput& input, const delaunay::PointCloud& poin
   return find_entry(show_as(), "spheres", "--show-as");
 }
 
-scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress) {
+LoadedScene from_points(const SceneInput& input, parallel::Progress* progress,
+                        const ScenePreview& preview) {
   tell_left_out(input.file);
   const bool picture = is_picture(input.file);
-  delaunay::PointCloud points = read_cloud(input.file);
+  const auto cloud = std::make_shared<delaunay::PointCloud>(read_cloud(input.file));
+  delaunay::PointCloud& points = *cloud;
   to_metres(points, input.file.path);
-  if (const ShowAs& how = shown_as(input, points, picture); how.is_points())
-    return as_points(input, points, how);
+  const ShowAs& how = shown_as(input, points, picture);
+  if (preview && points.size() > kPointsOfPreview) preview(coloured_preview(input, points));
+  if (how.is_points()) return {as_points(input, points, how), cloud};
   merge_places(input.file, points);
-  delaunay::Options how;
-  how.threads = parallel::arena_threads();
-  how.progress = progress;
-  require_memory_to_triangulate(input.file, points.size(), how.dim);
+  delaunay::Options options;
+  options.threads = parallel::arena_threads();
+  options.progress = progress;
+  require_memory_to_triangulate(input.file, points.size(), options.dim);
   const delaunay::Triangulation triangulation =
-      triangulate(delaunay::view(points.positions), how).triangulation;
+      triangulate(delaunay::view(points.positions), options).triangulation;
   if (triangulation.size() == 0) fail(input, no_surface(points));
-  return coloured(input, points, triangulation);
+  return {coloured(input, points, triangulation), cloud};
 }
 
 // Bytes that a triangle takes while its mesh becomes a scene, besides the mesh; measured.
@@ -187,7 +167,7 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
     throw UsageError(fmt::format("--point-size and --radius are for points and lines; {} has none",
                                  input.file.path));
   }
-  set_up(input, scene);
+  set_up_axis(input, scene);
   if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
   return scene;
 }
@@ -197,7 +177,7 @@ scenes::Scene unpacked(const SceneInput& input) {
   const files::MemoryBudget memory = input.file.limits.budget();
   packs::PackReader pack(input.file.path, memory);
   scenes::Scene scene = packs::unpack(pack, memory);
-  set_up(input, scene);
+  set_up_axis(input, scene);
   return scene;
 }
 
@@ -389,6 +369,11 @@ void refuse_for_packs(const SceneInput& input) {
 }
 
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
+  return load_scene_and_points(input, progress, {}).scene;
+}
+
+LoadedScene load_scene_and_points(const SceneInput& input, parallel::Progress* progress,
+                                  const ScenePreview& preview) {
   const InputKind kind = input_kind_of(input);
   if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
     refuse_outside(input.file.path, input.file.limits);
@@ -396,15 +381,15 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
   if (input.show_as == "relief" && has_size(input))
     throw UsageError("--point-size and --radius have no effect with --show-as relief");
   if (kind == InputKind::points || kind == InputKind::picture) {
-    return from_points(input, progress);
+    return from_points(input, progress, preview);
   }
-  if (kind == InputKind::pack) return unpacked(input);
+  if (kind == InputKind::pack) return {unpacked(input), nullptr};
   refuse_options_of_points(input, kind);
-  if (kind == InputKind::mesh) return from_mesh(input);
+  if (kind == InputKind::mesh) return {from_mesh(input), nullptr};
   if (input.exaggeration != 1) {
     throw UsageError(fmt::format("--exaggeration is for points; {} is a scene", input.file.path));
   }
-  return loaded(input, progress);
+  return {loaded(input, progress), nullptr};
 }
 
 }  // namespace delray::apps

@@ -1,7 +1,9 @@
 // A scene from whatever the user names: a scene file, a generated scene, points or a mesh of them.
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -73,5 +75,17 @@ void refuse_for_packs(const SceneInput& input);
 // shown as points, by default where they lie in space; a pack is unpacked.
 // Warnings go to the log. Parallel in the caller's arena. Throws FileError and UsageError.
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress);
+
+// A scene, and the points that it was made of, with all that their file says of them: coordinates
+// of the file, or metres where it has degrees. No points for a scene, mesh or pack.
+struct LoadedScene {
+  scenes::Scene scene;
+  std::shared_ptr<const delaunay::PointCloud> points;
+};
+// The same, with the points. Of many points `preview`, where there is one, gets a scene of some as
+// soon as they are read, before surfaces and sizes are made.
+using ScenePreview = std::function<void(scenes::Scene&& scene)>;
+LoadedScene load_scene_and_points(const SceneInput& input, parallel::Progress* progress,
+                                  const ScenePreview& preview);
 
 }  // namespace delray::apps

@@ -217,7 +217,7 @@ void take_scene(scenes::Scene&& scene, Prepared& prepared) {
 
 // Loads the scene, or of one that comes in parts what is no geometry.
 std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
-                               parallel::Progress* progress) {
+                               parallel::Progress* progress, const PrepareOptions& options) {
   if (reads_pages(request)) {
     std::shared_ptr<Prepared> prepared = open_pack(request);
     if (request.engine == Engine::raster || !has_glow(prepared->scene)) return prepared;
@@ -243,7 +243,9 @@ std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
     prepared->vertices = part.vertices;
     prepared->scene = std::move(part.scene);
   } else {
-    take_scene(load_scene(request.scene, progress), *prepared);
+    LoadedScene loaded = load_scene_and_points(request.scene, progress, options.preview);
+    if (options.keep_points) prepared->file_points = std::move(loaded.points);
+    take_scene(std::move(loaded.scene), *prepared);
   }
   pose_first(request.motion, request.scene.file.path, prepared->scene);
   return prepared;
@@ -265,7 +267,10 @@ void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& 
   }
   prepared.camera_number = own_camera(request.camera, scene);
   prepared.cameras = animation_cameras(request, scene, prepared.camera, pivot);
-  for (scenes::Camera& camera : prepared.cameras) set_lens(request.sampling, camera);
+  for (scenes::Camera& camera : prepared.cameras) {
+    set_lens(request.sampling, camera);
+    set_clip(request.camera, camera);
+  }
   set_lens(request.sampling, prepared.camera);
   if (!prepared.cameras.empty()) prepared.camera = prepared.cameras.front();
 }
@@ -402,16 +407,17 @@ std::uint64_t picture_bytes_per_pixel(const RenderRequest& request, int ranks_he
   return bytes_per_pixel(request) + others * layer;
 }
 
-std::shared_ptr<Prepared> prepare(const RenderRequest& request, parallel::Progress* progress) {
+std::shared_ptr<Prepared> prepare(const RenderRequest& request, parallel::Progress* progress,
+                                  const PrepareOptions& options) {
   Stopwatch watch;
   const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
-  std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
+  std::shared_ptr<Prepared> prepared = load(request, in_parts, progress, options);
   choose_cameras(request, seen_of(request, *prepared), *prepared);
   build(request, watch, *prepared);
   return prepared;
 }
 
-std::shared_ptr<const Prepared> prepare(const RenderRequest& request, scenes::Scene&& scene) {
+std::shared_ptr<Prepared> prepare(const RenderRequest& request, scenes::Scene&& scene) {
   Stopwatch watch;
   const auto prepared = std::make_shared<Prepared>();
   take_scene(std::move(scene), *prepared);
@@ -433,7 +439,7 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
   scenes::ScenePart made;
   if (!prepared) {
     on_all([&] {
-      prepared = load(request, comes_in_parts(request), progress);
+      prepared = load(request, comes_in_parts(request), progress, {});
       if (!prepared->in_parts || request.camera.view.empty()) return;
       made =
           scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());

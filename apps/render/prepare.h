@@ -31,8 +31,10 @@ struct Prepared {
   // This rank's part of a scene of which other ranks have read the rest; `scene` has none. Whoever
   // traces rays takes it.
   std::unique_ptr<scenes::ScenePart> part;
-  std::string texture_hash;                   // before the shader took the texels
-  std::string fingerprint;                    // likewise, of all; where there are checkpoints
+  std::string texture_hash;  // before the shader took the texels
+  std::string fingerprint;   // likewise, of all; where there are checkpoints
+  // The points that it was made of, where somebody asks for them (PrepareOptions::keep_points).
+  std::shared_ptr<const delaunay::PointCloud> file_points;
   bool lit_by_default = false;                // the last of the lights is the default one
   bool known_by_name = false;                 // the name of the scene alone tells what is in it
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
@@ -42,11 +44,18 @@ struct Prepared {
   const shading::Shader& shading() const { return tracer ? tracer->shader : *shader; }
 };
 
+// For who shows a scene to people.
+struct PrepareOptions {
+  bool keep_points = false;
+  ScenePreview preview;  // gets some of a scene while the rest is loaded
+};
+
 // Loads the scene, chooses the camera, builds what the engine needs. Parallel in the caller's
 // arena.
-std::shared_ptr<Prepared> prepare(const RenderRequest& request, parallel::Progress* progress);
+std::shared_ptr<Prepared> prepare(const RenderRequest& request, parallel::Progress* progress,
+                                  const PrepareOptions& options = {});
 // The same of a scene that is in memory; options of what is read change nothing.
-std::shared_ptr<const Prepared> prepare(const RenderRequest& request, scenes::Scene&& scene);
+std::shared_ptr<Prepared> prepare(const RenderRequest& request, scenes::Scene&& scene);
 
 // Collective: the same on every rank, for ranks that share no memory. Where strategy or
 // distribution and the scene allow it they read or make parts of it, and agree on cameras that show

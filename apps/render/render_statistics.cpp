@@ -20,6 +20,7 @@ Json options_of(const RenderRequest& request, int ranks, int threads) {
   options["light_strength"] = request.light.strength;
   options["camera"] = request.camera.camera;
   options["view"] = request.camera.view;
+  options["clip"] = request.camera.clip;
   options["color_by"] = request.scene.colour_by;
   options["up"] = request.scene.up;
   options["ranks"] = ranks;

@@ -75,6 +75,12 @@ void parse(Parser& parser, const Input& input, const Options& options) {
   }
 }
 
+bool names_camera(const std::string& word) {
+  constexpr const char* kOptions[] = {"--camera=", "--view=", "--clip="};
+  return std::ranges::any_of(kOptions,
+                             [&](const char* option) { return word.starts_with(option); });
+}
+
 const char* scope_text(Scope scope) {
   return scope == Scope::page ? "page" : scope == Scope::scene ? "scene" : "ranks";
 }
@@ -183,11 +189,13 @@ Json panel_of(const Input& input, const Options& options) {
   return groups;
 }
 
-std::string command_for(const Input& input, const Look& look, const std::string& camera) {
+std::string command_for(const Input& input, const Look& look, const CameraWords& camera) {
   std::vector<std::string> words = {"delray", "render"};
-  for (const std::string& word : words_of(input, look.still_options)) words.push_back(word);
+  for (const std::string& word : words_of(input, look.still_options))
+    if (camera.camera.empty() || !names_camera(word)) words.push_back(word);
   words.insert(words.end(), {"--size", look.still.size});
-  if (!camera.empty()) words.push_back("--camera=" + camera);
+  if (!camera.camera.empty()) words.push_back("--camera=" + camera.camera);
+  if (camera.clip > 0) words.push_back(fmt::format("--clip={}", camera.clip));
   words.insert(words.end(), {"-o", "picture.png"});
   return quoted_command(words);
 }

@@ -52,7 +52,13 @@ void set_size(int width, int height, RenderRequest& request);
 // "default", "idle"}]}].
 Json panel_of(const Input& input, const Options& options);
 
-// The command line of `delray render` for the picture, as a shell reads it.
-std::string command_for(const Input& input, const Look& look, const std::string& camera);
+// A camera as command lines have it: of --camera, and of --clip, where that is above 0.
+struct CameraWords {
+  std::string camera;
+  float clip = 0;
+};
+// The command line of `delray render` for the picture, as a shell reads it. Where there is a
+// camera, it stands for those that `input` names.
+std::string command_for(const Input& input, const Look& look, const CameraWords& camera);
 
 }  // namespace delray::apps::view

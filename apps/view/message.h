@@ -22,6 +22,7 @@ struct PageCamera {
   glm::vec3 eye{0, 0, 1}, at{0, 0, 0}, up{0, 1, 0};
   float fov = 40;    // vertical, degrees
   float height = 0;  // of an orthographic camera's frame; 0: perspective
+  float clip = 0;    // distance of a clipping plane along the view; 0: none
 };
 
 // The size of the picture, in pixels of the screen.

@@ -12,6 +12,7 @@ const char* const kBody = R"html(<body>
 <select id="views" aria-label="View from" title="Show everything from a side"></select>
 <button type="button" id="fly" aria-pressed="false" title="Look around where you are; W A S D Q E move (F)">Fly</button>
 <button type="button" id="measure" aria-pressed="false" title="Distance between two places that you click (M)">Measure</button>
+<button type="button" id="clip" aria-pressed="false" title="Cut through the scene where you clicked last, or where it turns about (C)">Clip</button>
 <button type="button" id="ranks" aria-pressed="false" title="Who renders what, and how long it takes (R)">Ranks</button>
 <span class="gap"></span>
 <button type="button" id="save" title="Save the picture as PNG">Save</button>
@@ -29,10 +30,12 @@ const char* const kBody = R"html(<body>
 <dt>double click</dt><dd>turn about that place</dd>
 <dt>arrows, + and &minus;</dt><dd>turn, zoom; with shift move</dd>
 <dt>W A S D, Q E</dt><dd>fly: forward, left, back, right, down, up</dd>
-<dt>Home, F, M, R, O, ?</dt><dd>show all, fly, measure, ranks, options, this</dd>
+<dt>[ and ]</dt><dd>move the clipping plane</dd>
+<dt>Home, F, M, C, R, O, ?</dt><dd>show all, fly, measure, clip, ranks, options, this</dd>
 </dl></div>
+<label id="cut" hidden>Clip <input type="range" id="cutat" min="0" max="1000" title="Where the cut is, from the front of the scene to its back ([ and ])"></label>
 <div id="picked" hidden><button type="button" id="unpick" title="Close (Esc)">&times;</button><div id="facts"></div></div>
-<div id="status" role="status"><span id="name"></span> <span id="numbers"></span></div>
+<div id="status" role="status"><span id="name"></span> <span id="numbers"></span> <span id="loading"></span></div>
 </div>
 <aside id="panel" aria-label="Options"><div id="figures" hidden></div><form id="groups"></form></aside>
 )html";

@@ -15,8 +15,9 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const length = a => Math.hypot(...a);
 const unit = a => times(a, 1 / (length(a) || 1));
 
-// scene: what the server says of it. camera: null until the server has placed one.
-let scene = null, camera = null;
+// scene: what the server says of it. camera: null until the server has placed one. cutAt: a place
+// of the scene that the clipping plane goes through, parallel to the screen; null without one.
+let scene = null, camera = null, cutAt = null;
 
 const worldUp = () => scene && scene.z_up ? [0, 0, 1] : [0, 1, 0];
 const horizon = () => scene && scene.z_up ? [[1, 0, 0], [0, 1, 0]] : [[0, 0, 1], [1, 0, 0]];
@@ -28,6 +29,13 @@ const axes = () => {
   if (length(right) < 1e-9) right = cross(forward, Math.abs(forward[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]);
   right = unit(right);
   return {forward, right, up: cross(right, forward)};
+};
+// The distance of the clipping plane along the view; 0: nothing is cut off.
+const clipped = () => cutAt && camera ? Math.max(0, dot(sub(cutAt, camera.eye), axes().forward)) : 0;
+// Distances along the view of the front of the scene and of its back.
+const ends = () => {
+  const middle = dot(sub(scene.centre, camera.eye), axes().forward), half = scene.size / 2;
+  return [Math.max(0, middle - half), middle + half];
 };
 const distance = () => length(sub(camera.at, camera.eye));
 // Units of the scene that a CSS pixel is wide, at the depth of what is looked at.

@@ -7,7 +7,8 @@ const char* const kConnection = R"js(
 let socket = null, retry = 500, shown = 0, number = 0, isMoving = false, isChanged = false, quiet = 0;
 let lastFile = null, lastHeader = null;
 const own = new Map();  // options of this page alone, as it has set them
-const recent = [];      // times of frames that move
+const recent = [];      // times of frames that move, of the last second
+let moved = 0;          // how many there were in all
 const drawn = canvas.getContext('2d');
 
 const say = message => {
@@ -30,6 +31,13 @@ const wait = (text, done = 0, total = 0) => {
   if (total > 0) { bar.max = total; bar.value = Math.min(done, total); } else bar.removeAttribute('value');
 };
 
+// What goes on beside a picture is told below it, and what there is no picture without, in the middle.
+const tellProgress = m => {
+  if (!lastHeader || !m.text) wait(m.text, m.done, m.total);
+  element('loading').textContent = !m.text ? '' :
+    m.text + (m.total > 0 ? ' ' + Math.floor(100 * Math.min(1, m.done / m.total)) + ' %' : ' \u2026');
+};
+
 const size = () => {
   const dense = window.devicePixelRatio || 1, side = x => Math.max(1, Math.min(8192, Math.round(x * dense)));
   return {width: side(canvas.clientWidth), height: side(canvas.clientHeight)};
@@ -38,11 +46,12 @@ const size = () => {
 const sendCamera = () => {
   if (!camera) return;
   say({type: 'camera', number: ++number, moving: isMoving, eye: camera.eye, at: camera.at, up: camera.up,
-       fov: camera.fov, height: camera.height});
+       fov: camera.fov, height: camera.height, clip: clipped()});
 };
 // At most once for each picture that the screen shows.
 const changed = () => {
   drawOverlay();
+  showCut();
   if (isChanged) return;
   isChanged = true;
   requestAnimationFrame(() => { isChanged = false; sendCamera(); });
@@ -82,7 +91,10 @@ const takeFrame = async bytes => {
   } else drawn.clearRect(0, 0, canvas.width, canvas.height);
   drawn.drawImage(bitmap, 0, 0);
   bitmap.close();
-  if (header.stage === 'moving') recent.push(performance.now());
+  if (header.stage === 'moving') {
+    ++moved;
+    recent.push(performance.now());
+  }
   lastHeader = header;
   lastFile = header.complete ? file : null;
   wait('');
@@ -94,27 +106,40 @@ const takeFrame = async bytes => {
 
 const handlers = {
   scene: m => {
+    // Of points there are some before all are there, and others may be in the middle of them.
+    const by = scene && camera ? sub(scene.origin, m.origin) : [0, 0, 0];
     scene = m;
+    element('loading').textContent = '';
+    if (length(by) > 0) {
+      shift(by);
+      if (cutAt) cutAt = add(cutAt, by);
+      picks = [];
+      showFacts();
+      changed();
+    }
     element('name').textContent = m.name.replace(/^.*\//, '');
     document.title = m.name.replace(/^.*\//, '') + ' \u2013 delray view';
     const count = n => n.toLocaleString('en').replace(/,/g, '\u202f');
     element('name').title = [m.triangles && count(m.triangles) + ' triangles', m.points && count(m.points) + ' points',
       m.instances > 1 && count(m.instances) + ' instances'].filter(Boolean).join(', ');
     element('views').replaceChildren(new Option('View', ''), ...m.views.map(v => new Option(v, v)));
-    wait('Rendering');
+    if (!lastHeader) wait('Rendering');
   },
   // A page that comes back keeps its camera.
   camera: m => {
     if (camera && !awaitsView) return sendCamera();
     awaitsView = false;
     camera = {eye: m.eye, at: m.at, up: m.up, fov: m.fov, height: m.height};
+    if (m.clip > 0) cutAt = add(camera.eye, times(axes().forward, m.clip));
+    else if (cutAt) changed();
+    showCut();
     drawOverlay();
   },
   panel: m => showPanel(m),
   pick: m => showPick(m),
   figures: m => showFigures(m),
   command: m => copied(m.text),
-  progress: m => wait(m.text, m.done, m.total),
+  progress: m => tellProgress(m),
   error: m => { note(m.text); if (lastHeader) wait(''); },
 };
 let awaitsView = true;

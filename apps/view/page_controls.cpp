@@ -105,6 +105,8 @@ const showRanks = on => {
 const showKeys = on => { press('help', on); element('keys').hidden = !on; };
 const setMeasure = on => { press('measure', on); canvas.classList.toggle('picks', on); picks = []; showFacts(); drawOverlay(); };
 
+const toggleCut = () => { if (camera) cut(cutAt ? null : picks.length ? picks[picks.length - 1].position : camera.at); };
+
 const kKeys = {
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
@@ -124,6 +126,8 @@ document.addEventListener('keydown', e => {
     if (!flies) flyOn(performance.now());
   } else if (key === 'Home') fit('default');
   else if (key === 'f') toggle('fly');
+  else if (key === 'c') toggleCut();
+  else if (cutAt && (key === '[' || key === ']')) cutBy((+element('cutat').value + (key === ']' ? 10 : -10)) / 1000);
   else if (key === 'm') setMeasure(!isPressed('measure'));
   else if (key === 'r') showRanks(!isPressed('ranks'));
   else if (key === 'o') showOptions(!isPressed('options'));
@@ -139,6 +143,8 @@ element('fit').onclick = () => fit('default');
 element('views').onchange = e => { if (e.target.value) fit(e.target.value); e.target.value = ''; canvas.focus(); };
 element('fly').onclick = () => toggle('fly');
 element('measure').onclick = () => setMeasure(!isPressed('measure'));
+element('clip').onclick = () => toggleCut();
+element('cutat').oninput = e => cutBy(Math.max(1e-3, e.target.value / 1000));
 element('ranks').onclick = () => showRanks(!isPressed('ranks'));
 element('options').onclick = () => showOptions(!isPressed('options'));
 element('help').onclick = () => showKeys(!isPressed('help'));
@@ -170,7 +176,7 @@ new ResizeObserver(() => {
 document.addEventListener('visibilitychange', watch);
 if (matchMedia('(max-width:46rem)').matches) showOptions(false);
 // For tests and the curious: what the page has, to be read.
-window.delray = () => ({camera, scene, header: lastHeader, picks, figures});
+window.delray = () => ({camera, clip: clipped(), scene, header: lastHeader, moved, picks, figures});
 connect();
 )js";
 

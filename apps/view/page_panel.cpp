@@ -77,7 +77,7 @@ const showPick = m => {
   showFacts();
   drawOverlay();
 };
-const between = () => length(sub(picks[0].position, picks[1].position));
+const between = () => length(sub(picks[0].measured, picks[1].measured));
 const showFacts = () => {
   element('picked').hidden = !picks.length;
   document.body.dataset.picks = picks.length;
@@ -89,7 +89,23 @@ const showFacts = () => {
   if (picks.length === 2) {
     parts.push(html('p', {className: 'distance'}, 'Distance ' + between().toPrecision(7) + ' units'));
   } else if (isPressed('measure')) parts.push(html('p', {}, 'Click another place.'));
+  else if (picks.length) parts.push(html('button', {type: 'button', id: 'cuthere', onclick: () => cut(picks[0].position)}, 'Clip here'));
   element('facts').replaceChildren(...parts);
+};
+
+// The clipping plane: through a place, or none.
+const cut = place => { cutAt = place; movedOnce(); };
+const showCut = () => {
+  press('clip', !!cutAt);
+  element('cut').hidden = !cutAt;
+  if (!cutAt || !camera || !scene) return;
+  const [front, back] = ends();
+  element('cutat').value = 1000 * (clipped() - front) / (back - front);
+};
+const cutBy = share => {
+  if (!camera || !scene) return;
+  const [front, back] = ends(), far = front + share * (back - front);
+  cut(far > 0 ? add(camera.eye, times(axes().forward, far)) : null);
 };
 
 // Over the picture: regions with their ranks' loads, marks at picks.

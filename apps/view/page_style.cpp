@@ -25,6 +25,7 @@ border:1px solid var(--line);border-radius:4px;padding:.25rem .6rem;min-height:2
 font-variant-numeric:tabular-nums;max-width:calc(100% - 1rem);opacity:.9;pointer-events:none}
 #name{font-weight:600;overflow-wrap:anywhere}
 #numbers{color:var(--soft)}
+#loading{font-weight:600;color:var(--accent)}
 #waiting{position:absolute;left:50%;top:50%;transform:translate(-50%,-50%);background:var(--paper);border-radius:6px;
 padding:.8rem 1.2rem;text-align:center;min-width:13rem}
 #waiting p{margin:0 0 .4rem}
@@ -34,8 +35,13 @@ padding:.8rem 1.2rem;text-align:center;min-width:13rem}
 padding:.4rem .8rem;max-width:min(40rem,calc(100% - 1rem));display:none;overflow-wrap:anywhere}
 #note.shown{display:block}
 #note.good{background:var(--ink);color:var(--paper)}
-#keys,#picked{position:absolute;right:.5rem;top:3.2rem;background:var(--paper);border:1px solid var(--line);border-radius:6px;
-padding:.6rem .9rem;max-width:min(25rem,calc(100% - 1rem));max-height:calc(100% - 6rem);overflow:auto}
+#keys,#picked{position:absolute;right:.5rem;bottom:3.2rem;background:var(--paper);border:1px solid var(--line);border-radius:6px;
+padding:.6rem .9rem;max-width:min(25rem,calc(100% - 1rem));max-height:calc(100% - 7rem);overflow:auto}
+#cut{position:absolute;right:.5rem;bottom:.5rem;background:var(--paper);border-radius:4px;padding:.15rem .6rem;display:flex;
+align-items:center;gap:.5rem;opacity:.9}
+#cut input{width:min(14rem,30vw);accent-color:var(--accent)}
+#cuthere{font:inherit;color:inherit;background:none;border:1px solid var(--line);border-radius:4px;margin-top:.5rem;
+padding:.15rem .6rem;cursor:pointer}
 #keys h3{margin:.1rem 0 .5rem}
 #keys dl{margin:0;grid-template-columns:max-content 1fr}
 #picked{padding-right:2.4rem}
@@ -43,7 +49,7 @@ padding:.6rem .9rem;max-width:min(25rem,calc(100% - 1rem));max-height:calc(100% 
 #picked h3{margin:.6rem 0 .2rem}#picked h3:first-child{margin-top:0}
 #picked .distance{font-weight:650;margin:.5rem 0 0}
 #unpick{position:absolute;top:.3rem;right:.3rem;border:0;min-height:0;padding:.1rem .5rem;font-size:1.1rem}
-#keys[hidden],#picked[hidden],#panel[hidden],#figures[hidden]{display:none}
+#keys[hidden],#cut[hidden],#picked[hidden],#panel[hidden],#figures[hidden]{display:none}
 #panel{flex:0 0 20rem;overflow-y:auto;border-left:1px solid var(--line);padding:.6rem .8rem 2rem;background:var(--paper)}
 #panel.wide{flex-basis:34rem}
 #panel details{border-bottom:1px solid var(--line);padding:.3rem 0}
@@ -66,7 +72,7 @@ padding:.6rem .9rem;max-width:min(25rem,calc(100% - 1rem));max-height:calc(100% 
 @media(max-width:46rem){body{flex-direction:column}
 #panel,#panel.wide{flex:0 0 42%;border-left:0;border-top:1px solid var(--line)}
 #bar .gap{display:none}#bar button,#bar select{padding:.25rem .45rem}
-#keys,#picked{top:auto;bottom:2.6rem;max-height:60%}#note{top:5.6rem}}
+#cut{bottom:2.6rem}#keys,#picked{bottom:5.2rem;max-height:60%}#note{top:5.6rem}}
 @media(pointer:coarse){#bar button,#bar select,#panel select,#panel input[type=text]{min-height:2.6rem}}
 )css";
 

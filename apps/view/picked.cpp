@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <vector>
 
+#include "apps/input/point_colours.h"
 #include "image/srgb.h"
+#include "parallel/parallel_for.h"
 #include "scenes/pick.h"
 
 namespace delray::apps::view {
@@ -51,6 +55,44 @@ void add_attributes(const scenes::Mesh& mesh, const glm::uvec3& corners, const g
   }
 }
 
+// The row of points that a place is nearest to; of several the lowest. Exact but for the rounding
+// of the place: a person clicks seldom, so all are looked at.
+std::size_t nearest_row(const delaunay::PointCloud& points, const glm::dvec3& place) {
+  constexpr std::size_t kRows = 1 << 16;  // of a task: some 50 us
+  struct Found {
+    double distance2 = std::numeric_limits<double>::infinity();
+    std::size_t row = 0;
+  };
+  std::vector<Found> found((points.size() + kRows - 1) / kRows);
+  parallel::parallel_for(0, found.size(), 1, [&](std::size_t block) {
+    Found best;
+    const std::size_t end = std::min(points.size(), (block + 1) * kRows);
+    for (std::size_t i = block * kRows; i < end; ++i) {
+      const glm::dvec3 apart = points.positions[i] - place;
+      const double distance2 = glm::dot(apart, apart);
+      if (distance2 < best.distance2) best = {distance2, i};
+    }
+    found[block] = best;
+  });
+  return std::ranges::min_element(found, {}, &Found::distance2)->row;
+}
+
+// What the file says of the point that the pick's nearest corner is.
+void add_point(const delaunay::PointCloud& points, const glm::dvec3& corner, Json& facts) {
+  const std::size_t row = nearest_row(points, corner);
+  facts.push_back({"nearest point", "row " + std::to_string(row)});
+  for (const PointAttribute& attribute : point_attributes())
+    if (attribute.exists(points))
+      facts.push_back({std::string(attribute.name), attribute.text(points, row)});
+}
+
+std::uint32_t nearest_corner(const glm::uvec3& corners, const glm::vec3& weights) {
+  int best = 0;
+  for (int i = 1; i < 3; ++i)
+    if (weights[i] > weights[best]) best = i;
+  return corners[best];
+}
+
 }  // namespace
 
 Json picked(const Task& task, const Prepared& prepared) {
@@ -65,7 +107,10 @@ Json picked(const Task& task, const Prepared& prepared) {
   const scenes::Mesh& mesh = scene.meshes[mesh_number];
   const glm::uvec3& corners = mesh.triangles[pick->triangle];
   Json facts = Json::array();
-  facts.push_back({"coordinates", text_of(pick->position + scene.origin)});
+  // As heights were before they were stretched.
+  const glm::dvec3 stretch(1, 1, task.order.look->still.scene.exaggeration);
+  const glm::dvec3 measured = pick->position / stretch;
+  facts.push_back({"coordinates", text_of(measured + scene.origin)});
   facts.push_back({kind_of(mesh), std::to_string(pick->triangle)});
   facts.push_back({"instance", std::to_string(pick->instance)});
   facts.push_back({"mesh", mesh.name.empty() ? std::to_string(mesh_number)
@@ -81,7 +126,12 @@ Json picked(const Task& task, const Prepared& prepared) {
                                               : fmt::format("{} ({})", mesh.material, name)});
   }
   add_attributes(mesh, corners, pick->weights, facts);
+  if (prepared.file_points && prepared.file_points->size() > 0) {
+    const glm::dvec3 corner(mesh.positions[nearest_corner(corners, pick->weights)]);
+    add_point(*prepared.file_points, corner / stretch + scene.origin, facts);
+  }
   answer["hit"] = true;
+  answer["measured"] = {measured.x, measured.y, measured.z};
   answer["position"] = {pick->position.x, pick->position.y, pick->position.z};
   answer["origin"] = {scene.origin.x, scene.origin.y, scene.origin.z};
   answer["depth"] = pick->depth;

@@ -12,7 +12,7 @@ namespace delray::apps::view {
 
 // What rank 0 has all ranks do.
 struct Job {
-  enum class Kind { picture, wait, reload, restart, end } kind = Kind::wait;
+  enum class Kind { picture, wait, reload, take, restart, end } kind = Kind::wait;
   Options options;  // of the picture, besides the input
   scenes::Camera camera;
   int width = 0, height = 0;

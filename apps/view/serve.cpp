@@ -51,6 +51,8 @@ class Root {
           break;
         case Task::Kind::reload:
           return end(Job::Kind::reload);
+        case Task::Kind::take:
+          return end(Job::Kind::take);
         case Task::Kind::restart:
           return end(Job::Kind::restart);
         case Task::Kind::end:
@@ -72,7 +74,10 @@ class Root {
 
   void place(const Task& task) {
     try {
-      serving_.viewers->place(task.page, camera_for(task, *serving_.prepared));
+      const bool is_named = !task.view.empty();
+      const double clip = is_named ? 0.0 : task.order.look->still.camera.clip;
+      serving_.viewers->place(task.page, camera_for(task, *serving_.prepared),
+                              static_cast<float>(clip));
     } catch (const std::invalid_argument& error) {
       tell(task.page, error.what());
     }

@@ -23,8 +23,8 @@ struct Serving {
 };
 
 // Collective: renders what pages want until something is wanted that needs other ranks or another
-// scene; returns what: reload, restart or end. Throws what rendering throws that no page is to
-// blame for.
+// scene; returns what: reload, take, restart or end. Throws what rendering throws that no page is
+// to blame for.
 Job::Kind serve(comm::Communicator& communicator, const Serving& serving);
 
 // The camera of a page that has none, or wants another view: of the options, or by its name.

@@ -5,13 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "apps/commands.h"
 #include "apps/interrupt.h"
@@ -19,6 +16,7 @@
 #include "apps/options/numbers.h"
 #include "apps/options/scheme_option.h"
 #include "apps/render/options/render_options.h"
+#include "apps/view/loading.h"
 #include "apps/view/look.h"
 #include "apps/view/open_browser.h"
 #include "apps/view/page.h"
@@ -26,7 +24,6 @@
 #include "apps/view/server.h"
 #include "apps/view/viewers.h"
 #include "comm/agree_on_failure.h"
-#include "parallel/arena.h"
 
 namespace delray::apps {
 namespace {
@@ -97,25 +94,6 @@ std::string choose_token() {
   return token;
 }
 
-// Tells pages how far loading is while it lives.
-class ReportLoading {
- public:
-  ReportLoading(Viewers& viewers, const parallel::Progress& progress)
-      : thread_([this, &viewers, &progress](const std::stop_token& stop) {
-          std::unique_lock lock(mutex_);
-          do {
-            viewers.set_progress("Loading", progress.done(), progress.total());
-          } while (!never_.wait_for(lock, stop, kBetween, [] { return false; }) &&
-                   !stop.stop_requested());
-        }) {}
-
- private:
-  static constexpr std::chrono::milliseconds kBetween{200};
-  std::mutex mutex_;
-  std::condition_variable_any never_;
-  std::jthread thread_;
-};
-
 // The first process: pages, and whoever brings them here.
 struct Pages {
   Viewers viewers;
@@ -160,16 +138,15 @@ class View {
                 [&](comm::Communicator& communicator) { run_over_mpi(communicator, launch); });
       return;
     }
-    std::shared_ptr<Prepared> prepared = load(launch);
-    for (Job::Kind next = Job::Kind::restart; next != Job::Kind::end;) {
+    Loading::Loaded shown, whole;
+    std::optional<Loading> loading;
+    for (Job::Kind next = Job::Kind::reload; next != Job::Kind::end;) {
+      show_next(next, launch, loading, shown, whole);
       launch = wanted(launch);
       run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
-        const Job::Kind kind = serve(communicator, serving(prepared, launch));
+        const Job::Kind kind = serve(communicator, serving(shown.prepared, launch));
         if (communicator.rank() == 0) next = kind;
       });
-      if (next == Job::Kind::reload) reload(launch, prepared);
-      if (next == Job::Kind::restart)
-        pages_->viewers.set_scene(facts_of(request_.render, *prepared));
     }
   }
 
@@ -196,32 +173,32 @@ class View {
     return launch;
   }
 
-  std::shared_ptr<Prepared> load(const Launch& launch) {
-    const RenderRequest request = pages_->viewers.shared_request();
-    const int ranks = std::max(1, launch.ranks);
-    const int threads = threads_per_rank(launch, ranks) * ranks;
-    const parallel::AllowThreads allowed(threads);
-    parallel::Arena arena(threads);
-    std::shared_ptr<Prepared> prepared;
-    {
-      parallel::Progress progress(&session_.progress);
-      const ReportLoading report(pages_->viewers, progress);
-      prepared = arena.execute([&] { return prepare(request, &progress); });
-    }
-    pages_->viewers.set_scene(arena.execute([&] { return facts_of(request, *prepared); }));
-    return prepared;
-  }
-
-  // What cannot be loaded is told, and what was there stays.
-  void reload(const Launch& launch, std::shared_ptr<Prepared>& prepared) {
+  // The scene that is shown next: some of one that is being loaded, all of it, or the same again.
+  // What cannot be loaded is told, and what was there stays; where nothing was, it is thrown.
+  void show_next(Job::Kind next, const Launch& launch, std::optional<Loading>& loading,
+                 Loading::Loaded& shown, Loading::Loaded& whole) {
     try {
-      prepared = load(launch);
+      if (next == Job::Kind::reload) {
+        const int ranks = std::max(1, launch.ranks);
+        loading.reset();
+        loading.emplace(pages_->viewers, threads_per_rank(launch, ranks) * ranks,
+                        session_.progress);
+        shown = loading->first();
+      } else if (next == Job::Kind::take && loading) {
+        shown = loading->whole();
+      }
     } catch (const parallel::Interrupted&) {
       throw;
     } catch (const std::exception& error) {
+      if (!whole.prepared) throw;
       pages_->viewers.refuse_shared(error.what());
-      pages_->viewers.set_scene(facts_of(request_.render, *prepared));
+      shown = whole;
     }
+    if (shown.is_whole) {
+      loading.reset();
+      whole = shown;
+    }
+    pages_->viewers.set_scene(shown.facts, shown.is_whole);
   }
 
   // Every process has the scene whole, and loads it anew when rank 0 wants that.
@@ -245,14 +222,16 @@ class View {
         parallel::Progress progress(&session_.progress);
         std::optional<ReportLoading> report;
         if (pages_) report.emplace(pages_->viewers, progress);
-        return prepare(request, &progress);
+        PrepareOptions wishes;
+        wishes.keep_points = pages_.has_value();
+        return prepare(request, &progress, wishes);
       });
       prepared = std::move(loaded);
     } catch (const comm::AgreedFailure&) {
       if (!prepared) throw;
       if (pages_) pages_->viewers.refuse_shared("the scene cannot be shown so");
     }
-    if (pages_) pages_->viewers.set_scene(facts_of(request_.render, *prepared));
+    if (pages_) pages_->viewers.set_scene(facts_of(request_.render, *prepared), true);
   }
 
   Session& session_;

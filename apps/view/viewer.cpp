@@ -65,8 +65,9 @@ void Viewer::resize(const SizeMessage& size) {
   renew();
 }
 
-void Viewer::place(const scenes::Camera& camera) {
+void Viewer::place(const scenes::Camera& camera, float clip) {
   camera_ = camera;
+  clip_ = clip;
   has_camera_ = true;
   moving_ = false;
   renew();
@@ -76,7 +77,7 @@ void Viewer::move(const CameraMessage& message, double now) {
   const PageCamera& page = message.camera;
   const bool same = has_camera_ && page.eye == camera_.eye && page.at == camera_.at &&
                     page.up == camera_.up && page.fov == camera_.vertical_fov &&
-                    page.height == camera_.height;
+                    page.height == camera_.height && page.clip == clip_;
   camera_number_ = message.number;
   moving_ = message.moving;
   moved_at_ = now;
@@ -86,7 +87,9 @@ void Viewer::move(const CameraMessage& message, double now) {
   camera_.up = page.up;
   camera_.vertical_fov = page.fov;
   camera_.height = page.height;
-  camera_.near = camera_.far = 0;
+  clip_ = page.clip;
+  camera_.near = page.clip;
+  camera_.far = 0;
   camera_.name.clear();
   has_camera_ = true;
   renew();

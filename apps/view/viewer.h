@@ -64,8 +64,8 @@ class Viewer {
       : look_(std::move(look)), options_(options) {}
 
   void resize(const SizeMessage& size);
-  // A camera that the program chose.
-  void place(const scenes::Camera& camera);
+  // A camera that the program chose, and the distance of its clipping plane; 0: none.
+  void place(const scenes::Camera& camera, float clip);
   void move(const CameraMessage& message, double now);
   void set_look(std::shared_ptr<const Look> look, const Options& options);
   void watch(const WatchMessage& message);
@@ -82,6 +82,7 @@ class Viewer {
   int width() const { return width_; }
   int height() const { return height_; }
   const scenes::Camera& camera() const { return camera_; }
+  float clip() const { return clip_; }
   const std::shared_ptr<const Look>& look() const { return look_; }
   const Options& options() const { return options_; }
   bool is_visible() const { return visible_; }
@@ -107,6 +108,7 @@ class Viewer {
   Options options_;
   int width_ = 0, height_ = 0;
   scenes::Camera camera_;
+  float clip_ = 0;
   bool has_camera_ = false, moving_ = false, visible_ = true, figures_ = false, complete_ = false;
   std::uint64_t camera_number_ = 0, rendered_number_ = 0, version_ = 0;
   std::uint64_t sent_ = 0, seen_ = 0;

@@ -199,7 +199,8 @@ void Viewers::receive(PageId id, Page& page, const CommandMessage&) {
   Look look = *viewer.look();
   set_size(viewer.width(), viewer.height(), look.still);
   send(id, {{"type", "command"},
-            {"text", command_for(input_, look, camera_text(viewer.camera(), origin))}});
+            {"text",
+             command_for(input_, look, {camera_text(viewer.camera(), origin), viewer.clip()})}});
 }
 
 void Viewers::send_panel(PageId id, const Viewer& viewer) {
@@ -245,13 +246,19 @@ void Viewers::refuse_shared(const std::string& why) {
   for (const auto& [id, page] : pages_) send(id, {{"type", "error"}, {"text", why}});
 }
 
-void Viewers::set_scene(const Json& facts) {
+void Viewers::set_scene(const Json& facts, bool is_whole) {
   const std::scoped_lock lock(mutex_);
-  shared_in_force_ = shared_;
+  if (is_whole) shared_in_force_ = shared_;
   scene_ = facts;
   progress_ = nullptr;
   for (const auto& [id, page] : pages_) send(id, scene_);
   renew_looks();
+  changed_.notify_all();
+}
+
+void Viewers::scene_is_there() {
+  const std::scoped_lock lock(mutex_);
+  wants_take_ = true;
   changed_.notify_all();
 }
 
@@ -263,25 +270,30 @@ void Viewers::set_progress(const std::string& what, std::uint64_t done, std::uin
   for (const auto& [id, page] : pages_) send(id, progress_);
 }
 
-void Viewers::place(PageId page, const scenes::Camera& camera) {
+void Viewers::place(PageId page, const scenes::Camera& camera, float clip) {
   const std::scoped_lock lock(mutex_);
   const auto found = pages_.find(page);
   if (found == pages_.end() || !found->second.viewer) return;
-  found->second.viewer->place(camera);
+  found->second.viewer->place(camera, clip);
   send(page, {{"type", "camera"},
               {"eye", numbers_of(camera.eye)},
               {"at", numbers_of(camera.at)},
               {"up", numbers_of(camera.up)},
               {"fov", camera.vertical_fov},
-              {"height", camera.height}});
+              {"height", camera.height},
+              {"clip", clip}});
 }
 
 // What a page has asked for and is no picture, then pictures in turns, those that move first.
 std::optional<Task> Viewers::due(double now) {
   Task task;
   if (std::exchange(wants_reload_, false)) {
-    wants_restart_ = false;
+    wants_restart_ = wants_take_ = false;
     task.kind = Task::Kind::reload;
+    return task;
+  }
+  if (std::exchange(wants_take_, false)) {
+    task.kind = Task::Kind::take;
     return task;
   }
   if (std::exchange(wants_restart_, false)) {
@@ -353,7 +365,7 @@ Task Viewers::next(const parallel::Progress& progress, double most_seconds) {
 bool Viewers::is_outdone(const Task& task, double seconds) const {
   constexpr double kTurn = 0.5;  // seconds that pages that rest are served in turn
   const std::scoped_lock lock(mutex_);
-  if (wants_reload_ || wants_restart_) return true;
+  if (wants_reload_ || wants_restart_ || wants_take_) return true;
   const double now = seconds_now();
   const auto own = pages_.find(task.page);
   if (own == pages_.end() || !own->second.viewer->is_visible() ||

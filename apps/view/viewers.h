@@ -24,6 +24,7 @@ struct Task {
     pick,     // what lies under a place in a page's picture?
     place,    // where is the scene seen from, by the view of this name, or at first?
     reload,   // the scene, as other options want it
+    take,     // the rest of a scene of which some is shown: scene_is_there
     restart,  // with another number of ranks or threads
     end       // nobody wants anything any more
   } kind = Kind::nothing;
@@ -56,8 +57,11 @@ class Viewers {
   RenderRequest shared_request() const;
   // Takes back what was asked of scene and ranks, since it cannot be, and says why.
   void refuse_shared(const std::string& why);
-  // There is a scene: pages are told of it, and show it. `facts` go to pages as they are.
-  void set_scene(const Json& facts);
+  // There is a scene, or some of one: pages are told of it, and show it. `facts` go to pages as
+  // they are.
+  void set_scene(const Json& facts, bool is_whole);
+  // A scene of which some is shown has been loaded.
+  void scene_is_there();
   // What pages wait for, shown with a share done.
   void set_progress(const std::string& what, std::uint64_t done, std::uint64_t total);
   // Says something to one page, or to all.
@@ -69,7 +73,8 @@ class Viewers {
   // Whether somebody wants something else than this order to go on: it is not due any more,
   // something that moves is, or another page has waited for as long as it took so far.
   bool is_outdone(const Task& task, double seconds) const;
-  void place(PageId page, const scenes::Camera& camera);
+  // A camera for a page, and the distance of its clipping plane; 0: none.
+  void place(PageId page, const scenes::Camera& camera, float clip);
   void done(const Task& task, double seconds, bool is_complete);
   // The number of the next frame for a page; 0: it is not there any more.
   std::uint64_t number_frame(PageId page);
@@ -110,7 +115,7 @@ class Viewers {
   std::condition_variable changed_;
   std::map<PageId, Page> pages_;
   PageId last_served_ = 0;
-  bool had_pages_ = false, wants_reload_ = false, wants_restart_ = false;
+  bool had_pages_ = false, wants_reload_ = false, wants_restart_ = false, wants_take_ = false;
   double last_closed_ = 0;
   Json scene_, progress_;
 };

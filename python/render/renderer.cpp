@@ -154,7 +154,7 @@ class Renderer {
   scenes::Camera camera_of(const std::string& text) const {
     if (text.empty()) return prepared_->camera;
     const float aspect = static_cast<float>(request_.width) / static_cast<float>(request_.height);
-    scenes::Camera camera = apps::choose_camera({text, ""}, prepared_->scene,
+    scenes::Camera camera = apps::choose_camera({text, "", request_.camera.clip}, prepared_->scene,
                                                 scenes::farthest_points(prepared_->scene), aspect);
     camera.aperture = prepared_->camera.aperture;
     camera.focus = prepared_->camera.focus;

@@ -6,13 +6,18 @@ Ends with 77, skipped, where Chromium, its driver or Selenium are missing.
 import csv
 import json
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
-SKIPPED = 77
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from chromium import errors_of, open_browser  # noqa: E402, first: it may skip
+
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+
 # Name, whether its charts show so many variants that some of a group are grey, command.
 REPORTS = [
     ("compose", True, "compare compose gen:city:3000 --size 160x90 --ranks 2,4,80 --quick"
@@ -24,36 +29,6 @@ REPORTS = [
     ("schedule", True, "compare schedule gen:spheres:500 --size 160x90 --ranks 2,4,80 --tile 16 --quick"
                  " --schedule static,random,demand,guided,stealing,neighbour-stealing"),
 ]
-
-
-def skip(why):
-    print("skipped:", why)
-    sys.exit(SKIPPED)
-
-
-try:
-    from selenium import webdriver
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.chrome.service import Service
-except ImportError:
-    skip("python3-selenium is not installed")
-for program in ("chromium", "chromedriver"):
-    if not shutil.which(program):
-        skip(program + " is not installed")
-
-
-def open_browser(folder):
-    options = webdriver.ChromeOptions()
-    options.add_argument(f"--user-data-dir={folder / 'browser'}")
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic",
-                     "--no-first-run", "--disable-background-networking",
-                     "--disable-component-update", "--disable-sync",
-                     "--window-size=1280,1000"):
-        options.add_argument(argument)
-    options.add_experimental_option("prefs", {"download.default_directory": str(folder)})
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
 
 
 def flattened(value, name, into):
@@ -101,18 +76,24 @@ def check_csv(browser, folder, statistics):
             assert same(row[name], value), (name, row[name], value)
 
 
-# Texts that are too small to be read, in pixels on the screen, whatever they are scaled by.
-SMALL_TEXTS = """
-return [...document.querySelectorAll('body *')].filter(e => e.getClientRects().length &&
-    [...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()))
-  .map(e => [e.textContent, parseFloat(getComputedStyle(e).fontSize) *
-    (e.ownerSVGElement ? Math.hypot(e.getScreenCTM().a, e.getScreenCTM().b) : 1)]).filter(pair => pair[1] < 11)"""
-# Texts of plots that reach out of the window.
-CLIPPED_TEXTS = """
-return [...document.querySelectorAll('.plot text')].filter(e => {
-  const box = e.getBoundingClientRect();
-  return box.width && (box.left < 0 || box.right > document.documentElement.clientWidth);
-}).map(e => e.textContent)"""
+# Of every tab: its name, how wide it makes the page, texts that are too small to be read, in pixels
+# on the screen, whatever they are scaled by, and texts of plots that reach out of the window.
+LOOK_AT_TABS = """
+return [...document.querySelectorAll('[role=tab]')].map(tab => {
+  tab.click();
+  const panel = document.querySelector('[role=tabpanel]:not(.hidden)');
+  const shown = [...document.querySelectorAll('body > :not(main), main > :not([role=tabpanel])'), panel]
+    .flatMap(e => [e, ...e.querySelectorAll('*')]);
+  const small = shown.filter(e => [...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()) &&
+      e.getClientRects().length)
+    .map(e => [e.textContent, parseFloat(getComputedStyle(e).fontSize) *
+      (e.ownerSVGElement ? Math.hypot(e.getScreenCTM().a, e.getScreenCTM().b) : 1)]).filter(pair => pair[1] < 11);
+  const clipped = [...panel.querySelectorAll('.plot text')].filter(e => {
+    const box = e.getBoundingClientRect();
+    return box.width && (box.left < 0 || box.right > document.documentElement.clientWidth);
+  }).map(e => e.textContent);
+  return {name: tab.textContent, width: document.documentElement.scrollWidth, small, clipped};
+})"""
 
 
 def check_widths(browser, tabs):
@@ -120,12 +101,10 @@ def check_widths(browser, tabs):
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                 {"width": width, "height": 900, "deviceScaleFactor": 1,
                                  "mobile": False})
-        for tab in tabs:
-            tab.click()
-            root = browser.find_element(By.TAG_NAME, "html")
-            assert int(root.get_property("scrollWidth")) <= width, (width, tab.text)
-            assert not (small := browser.execute_script(SMALL_TEXTS)), (width, tab.text, small)
-            assert not (clipped := browser.execute_script(CLIPPED_TEXTS)), (width, clipped)
+        looks = browser.execute_script(LOOK_AT_TABS)
+        assert len(looks) == len(tabs)
+        for look in looks:
+            assert look["width"] <= width and not look["small"] and not look["clipped"], (width, look)
         used = browser.execute_script(
             "return document.querySelector('main').getBoundingClientRect().width")
         assert used > 0.9 * width, (used, width)
@@ -169,18 +148,22 @@ def check_lights(browser):
 def check_colours(browser):
     """Classes that make the look of each line, by name; the same in every chart."""
     looks = {}
-    for series in browser.find_elements(By.CSS_SELECTOR, "g.series"):
-        look = tuple(c for c in series.get_attribute("class").split() if c[0] in "cd" and c[1:].isdigit())
-        name = series.get_attribute("data-name")
+    for name, classes in browser.execute_script(
+            "return [...document.querySelectorAll('g.series')].map(e => [e.dataset.name, [...e.classList]])"):
+        look = tuple(c for c in classes if c[0] in "cd" and c[1:].isdigit())
         assert looks.setdefault(name, look) == look, (name, looks[name], look)
     assert len(looks) > 5, looks
 
 
-def check(browser, name, has_grey_lines, command, delray, folder):
-    page, statistics = folder / f"{name}.html", folder / f"{name}.json"
+def start(name, has_grey_lines, command, delray, folder):
+    """The program, at work at a report."""
     command = command.format(points=folder / "points.xyz")
-    subprocess.run([delray, *command.split(), "-q", "-o", page, "--stats", statistics],
-                   check=True, stdout=subprocess.DEVNULL)
+    return subprocess.Popen([delray, *command.split(), "-q", "-o", folder / f"{name}.html",
+                             "--stats", folder / f"{name}.json"], stdout=subprocess.DEVNULL)
+
+
+def check(browser, name, has_grey_lines, folder):
+    page, statistics = folder / f"{name}.html", folder / f"{name}.json"
     browser.get(page.as_uri())
     tabs = browser.find_elements(By.CSS_SELECTOR, "[role=tab]")
     assert len(tabs) >= 2, "no tabs"
@@ -208,8 +191,7 @@ def check(browser, name, has_grey_lines, command, delray, folder):
     else:
         raise AssertionError("no compiler is named")
     check_csv(browser, folder, json.loads(statistics.read_text()))
-    errors = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
-    assert not errors, errors
+    assert not (errors := errors_of(browser)), errors
 
 
 def main():
@@ -217,13 +199,19 @@ def main():
         folder = pathlib.Path(name)
         subprocess.run([sys.argv[1], *"generate points cluster -n 900 --dim 2 -q -o".split(),
                         folder / "points.xyz"], check=True)
-        browser = open_browser(folder)
+        # While one report is looked at, the next is made.
+        making = start(*REPORTS[0], sys.argv[1], folder)
+        browser = open_browser(folder, 1280, 1000)
         try:
-            for report in REPORTS:
-                check(browser, *report, sys.argv[1], folder)
-                print("passed:", report[0])
+            for report, after in zip(REPORTS, REPORTS[1:] + [None]):
+                assert making.wait() == 0, report
+                if after:
+                    making = start(*after, sys.argv[1], folder)
+                check(browser, *report[:2], folder)
+                print("passed:", report[0], flush=True)
         finally:
             browser.quit()
+            making.kill()
 
 
 main()

@@ -18,8 +18,11 @@ namespace {
 
 constexpr int kFullWidth = 1920, kFullHeight = 1080;
 
+enum class Cut { none, in_the_middle };
+
 // Pixels that only one of the engines covers.
-std::uint64_t coverage_difference(scenes::Scene scene, bool orthographic = false) {
+std::uint64_t coverage_difference(scenes::Scene scene, bool orthographic = false,
+                                  Cut cut = Cut::none) {
   scenes::Camera camera =
       scenes::camera_around(scene, "default", static_cast<float>(kFullWidth) / kFullHeight);
   if (orthographic) {
@@ -27,6 +30,7 @@ std::uint64_t coverage_difference(scenes::Scene scene, bool orthographic = false
     camera.height = 0.7F * distance * std::tan(glm::radians(camera.vertical_fov * 0.5F));
     camera.near = 0.5F * distance;  // cuts into some
   }
+  if (cut == Cut::in_the_middle) camera.near = glm::distance(camera.eye, camera.at);
   complete(scene, camera);
   std::uint64_t differs = 0;
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
@@ -59,6 +63,12 @@ TEST_P(GeneratedScenes, HaveTheSameSilhouettes) {
 TEST_P(GeneratedScenes, HaveTheSameSilhouettesAlongParallelRays) {
   EXPECT_LE(coverage_difference(scenes::generate(GetParam()), true), kAllowed);
 }
+
+TEST(Engines, HaveTheSameSilhouettesOfWhatANearPlaneLeaves) {
+  EXPECT_LE(coverage_difference(scenes::generate("gen:city:20000"), false, Cut::in_the_middle),
+            kAllowed);
+}
+
 INSTANTIATE_TEST_SUITE_P(Engines, GeneratedScenes,
                          testing::Values("gen:terrain:50000", "gen:spheres:20000", "gen:city:20000",
                                          "gen:field:100000"));

@@ -194,6 +194,27 @@ TEST(RenderCommand, CamerasOfTheSceneByNameAndNumber) {
   }
 }
 
+TEST(RenderCommand, AClipIsOnePictureHoweverTheWorkIsShared) {
+  const Folder folder;
+  const std::string size = "delray render gen:city:4000 -o a.png --size 121x77 ";
+  // From above: all that reaches higher than 15 is cut off.
+  const std::string base = size + "--camera 0,200,0,0,0,0,0,0,1,60 ";
+  for (const std::string engine : {"", "--engine raytrace --integrator direct "}) {
+    const std::string whole = statistics(base + engine, folder)["image"]["hash"];
+    const json cut = statistics(base + engine + "--clip 185", folder);
+    EXPECT_EQ(cut["options"]["clip"], 185);
+    EXPECT_NE(cut["image"]["hash"], whole);
+    EXPECT_EQ(statistics(base + engine + "--clip 1e-3", folder)["image"]["hash"], whole);
+    EXPECT_EQ(statistics(base + engine + "--clip 185 --ranks 3", folder)["image"]["hash"],
+              cut["image"]["hash"]);
+  }
+  EXPECT_EQ(
+      statistics(base + "--strategy sort-first --ranks 2 --clip 185", folder)["image"]["hash"],
+      statistics(base + "--strategy sort-middle --ranks 2 --clip 185", folder)["image"]["hash"]);
+  EXPECT_EQ(run(size + "--clip 0", folder.path()).exit_code, 2);
+  EXPECT_EQ(run(size + "--clip -1", folder.path()).exit_code, 2);
+}
+
 TEST(RenderCommand, TellsTheCameraAsItCanBeGiven) {
   const Folder folder;
   const std::string base = "delray render gen:spheres:500 -o a.png --size 48x32 ";

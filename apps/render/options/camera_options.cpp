@@ -9,6 +9,7 @@
 
 #include "apps/options/help.h"
 #include "apps/options/list.h"
+#include "apps/options/numbers.h"
 #include "apps/session.h"
 #include "scenes/camera_path.h"
 #include "scenes/framing.h"
@@ -31,6 +32,17 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
       ->group(group::kCamera)
       ->excludes(camera);
   choose_from(command, "--view", scenes::view_names());
+  command
+      .add_option("--clip", options.clip,
+                  "Cut through the scene: hide what is nearer to the camera than this distance "
+                  "along the view, in units of the scene (default: the camera's near plane)")
+      ->type_name("DISTANCE")
+      ->group(group::kCamera)
+      ->check(number_between(1e-18, 1e18));
+}
+
+void set_clip(const CameraOptions& options, scenes::Camera& camera) {
+  if (options.clip > 0) camera.near = static_cast<float>(options.clip);
 }
 
 namespace {
@@ -57,22 +69,8 @@ std::string cameras_of(const scenes::Scene& scene) {
   return list;
 }
 
-}  // namespace
-
-bool shows_all(const CameraOptions& options, const scenes::Scene& scene) {
-  return options.camera.empty() && (!options.view.empty() || scene.cameras.empty());
-}
-
-std::uint32_t own_camera(const CameraOptions& options, const scenes::Scene& scene) {
-  if (shows_all(options, scene)) return scenes::kNone;
-  if (options.camera.empty()) return 0;
-  if (scenes::parse_camera(options.camera, scene.origin)) return scenes::kNone;
-  const scenes::Camera* const own = find_camera(scene, options.camera);
-  return own == nullptr ? scenes::kNone : static_cast<std::uint32_t>(own - scene.cameras.data());
-}
-
-scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
-                             const scenes::FarthestPoints& farthest, float aspect) {
+scenes::Camera unclipped_camera(const CameraOptions& options, const scenes::Scene& scene,
+                                const scenes::FarthestPoints& farthest, float aspect) {
   if (!options.camera.empty()) {
     const auto camera = scenes::parse_camera(options.camera, scene.origin);
     if (camera) return *camera;
@@ -90,6 +88,27 @@ scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& 
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format("--view: {}", error.what()));
   }
+}
+
+}  // namespace
+
+bool shows_all(const CameraOptions& options, const scenes::Scene& scene) {
+  return options.camera.empty() && (!options.view.empty() || scene.cameras.empty());
+}
+
+std::uint32_t own_camera(const CameraOptions& options, const scenes::Scene& scene) {
+  if (shows_all(options, scene)) return scenes::kNone;
+  if (options.camera.empty()) return 0;
+  if (scenes::parse_camera(options.camera, scene.origin)) return scenes::kNone;
+  const scenes::Camera* const own = find_camera(scene, options.camera);
+  return own == nullptr ? scenes::kNone : static_cast<std::uint32_t>(own - scene.cameras.data());
+}
+
+scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
+                             const scenes::FarthestPoints& farthest, float aspect) {
+  scenes::Camera camera = unclipped_camera(options, scene, farthest, aspect);
+  set_clip(options, camera);
+  return camera;
 }
 
 }  // namespace delray::apps

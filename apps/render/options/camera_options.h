@@ -1,4 +1,4 @@
-// --camera and --view: where the scene is seen from.
+// --camera, --view and --clip: where the scene is seen from.
 #pragma once
 
 #include <string>
@@ -15,9 +15,14 @@ namespace delray::apps {
 struct CameraOptions {
   std::string camera;  // "eye,at,up,fov": ten numbers; or one of the scene's
   std::string view;    // a name that camera_around knows
+  double clip = 0;     // distance of the near plane, in units of the scene; 0: the camera's own
 };
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
+
+// Moves the near plane to where --clip wants it. An orthographic camera whose `far` is nearer than
+// that sees nothing.
+void set_clip(const CameraOptions& options, scenes::Camera& camera);
 
 // Whether the camera is one that shows all of the scene, not one that somebody placed.
 bool shows_all(const CameraOptions& options, const scenes::Scene& scene);
@@ -27,7 +32,7 @@ std::uint32_t own_camera(const CameraOptions& options, const scenes::Scene& scen
 
 // The camera of --camera or --view, else the scene's own first camera, else one that shows all of
 // it. `farthest` knows all points of the scene, and is asked for the cameras that show it only.
-// Throws UsageError.
+// Clipped by --clip. Throws UsageError.
 scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
                              const scenes::FarthestPoints& farthest, float aspect);
 

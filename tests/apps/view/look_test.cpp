@@ -82,7 +82,7 @@ TEST(ViewLook, NothingThatReadsOrWritesFilesIsOnThePanel) {
 TEST(ViewLook, CommandNamesSceneOptionsAndCamera) {
   Look look = make_look({"a b.glb", "--light=none"}, {{"--samples", "2"}, {"--legend", "true"}});
   set_size(640, 480, look.still);
-  EXPECT_EQ(command_for({"a b.glb", "--light=none"}, look, "1,2,3,0,0,0,0,0,1,40"),
+  EXPECT_EQ(command_for({"a b.glb", "--light=none"}, look, {"1,2,3,0,0,0,0,0,1,40"}),
             "delray render 'a b.glb' --light=none --samples=2 --legend --size 640x480 "
             "--camera=1,2,3,0,0,0,0,0,1,40 -o picture.png");
 }

@@ -9,7 +9,7 @@ namespace {
 
 std::string camera(const std::string& eye = "[1,2,3]", const std::string& rest = "") {
   return R"({"type":"camera","number":7,"moving":true,"eye":)" + eye +
-         R"(,"at":[0,0,0.5],"up":[0,0,1],"fov":40,"height":0)" + rest + "}";
+         R"(,"at":[0,0,0.5],"up":[0,0,1],"fov":40,"height":0,"clip":0)" + rest + "}";
 }
 
 TEST(ViewMessage, ReadsEveryType) {

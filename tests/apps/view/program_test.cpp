@@ -8,6 +8,9 @@
 
 #include <array>
 #include <chrono>
+#include <cstdio>
+#include <glm/glm.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -188,6 +191,94 @@ TEST(View, EndsWithCtrlCAndWithTheLastPage) {
   Running other({"gen:spheres:100", "--threads", "1", "--once"});
   { PageClient page(other.address()); }
   EXPECT_EQ(other.exit_code(), 0);
+}
+
+TEST(View, AClippedPictureIsTheOneThatItsCommandMakes) {
+  Running view({"gen:spheres:500", "--ranks", "2", "--threads", "1", "--view", "top"});
+  PageClient page(view.address());
+  page.say(hello(160, 90));
+  Json placed = page.wait_for("camera");
+  EXPECT_EQ(placed["clip"], 0);
+  const PageFrame whole = page.wait_for_frame(is_complete);
+  glm::dvec3 eye, at;
+  for (int i = 0; i < 3; ++i) {
+    eye[i] = placed["eye"][static_cast<std::size_t>(i)].get<double>();
+    at[i] = placed["at"][static_cast<std::size_t>(i)].get<double>();
+  }
+  placed["clip"] = static_cast<float>(glm::distance(eye, at));
+  page.say(camera(placed, 1, false, 0));
+  const PageFrame cut = page.wait_for_frame(
+      [](const Json& header) { return header["camera"] == 1 && is_complete(header); });
+  EXPECT_NE(hash_of(whole), hash_of(cut));
+
+  page.say({{"type", "command"}});
+  const std::string command = page.wait_for("command")["text"];
+  EXPECT_NE(command.find("--clip="), std::string::npos);
+  EXPECT_EQ(command.find("--view"), std::string::npos) << "the camera stands for it";
+  Folder folder;
+  const Ran rendered = run(command + " --stats -", folder.path());
+  ASSERT_EQ(rendered.exit_code, 0) << command << rendered.err;
+  EXPECT_EQ(Json::parse(rendered.out)["image"]["hash"], hash_of(cut)) << command;
+}
+
+// What the page is told of the place in the middle of its picture, by name.
+std::map<std::string, std::string> facts_in_the_middle(PageClient& page) {
+  page.say({{"type", "pick"}, {"x", 0.5}, {"y", 0.5}});
+  const Json pick = page.wait_for("pick");
+  std::map<std::string, std::string> facts;
+  if (!pick["hit"].get<bool>()) return facts;
+  for (const Json& fact : pick["facts"]) facts[fact[0]] = fact[1];
+  return facts;
+}
+
+TEST(View, APickedPointHasTheAttributesOfItsFile) {
+  Folder folder;
+  folder.write("survey.csv",
+               "x,y,z,intensity,classification,red,green,blue\n"
+               "500,500,7,0.25,2,10,20,30\n"
+               "510,500,7,0.5,6,40,50,60\n"
+               "500,510,7,0.5,9,70,80,90\n"
+               "510,510,7,0.5,5,1,2,3\n"
+               "505,505,9,0.75,6,255,128,0\n");
+  const std::string file = (folder.path() / "survey.csv").string();
+  for (const char* const shown : {"points", "relief"}) {
+    Running view(
+        {file, "--show-as", shown, "--view", "top", "--exaggeration", "3", "--threads", "1"});
+    PageClient page(view.address());
+    page.say(hello(160, 160));
+    page.wait_for("camera");
+    page.wait_for_frame(is_complete);
+    const auto facts = facts_in_the_middle(page);
+    EXPECT_EQ(facts.at("nearest point"), "row 4") << shown;
+    EXPECT_EQ(facts.at("classification"), "6 building");
+    EXPECT_EQ(facts.at("rgb"), "#ff8000");
+    EXPECT_TRUE(facts.contains("intensity"));
+    double z = 0;
+    ASSERT_EQ(std::sscanf(facts.at("coordinates").c_str(), "%*f, %*f, %lf", &z), 1);
+    EXPECT_NEAR(z, 9, 0.1) << "without the exaggeration";
+  }
+}
+
+TEST(View, ManyPointsAreShownBeforeTheirSurfaceIsThere) {
+  Folder folder;
+  ASSERT_EQ(run("delray generate points uniform -n 250000 --dim 3 -q -o many.ply", folder.path())
+                .exit_code,
+            0);
+  Running view({(folder.path() / "many.ply").string(), "--show-as", "relief", "--threads", "1"});
+  PageClient page(view.address());
+  page.say(hello(64, 48));
+  Json scene = page.wait_for("scene");
+  if (scene["triangles"] == 0) {  // otherwise this machine was faster than the connection
+    EXPECT_GT(scene["points"], 50000);
+    EXPECT_LT(scene["points"], 150000);
+    page.wait_for("camera");
+    page.wait_for_frame([](const Json&) { return true; });
+    const Json before = scene;
+    scene = page.wait_for("scene");
+    EXPECT_EQ(scene["origin"], before["origin"]);
+  }
+  EXPECT_GT(scene["triangles"], 400000);
+  page.wait_for_frame(is_complete);
 }
 
 TEST(View, WhatIsWrongEndsBeforeAnythingIsServed) {

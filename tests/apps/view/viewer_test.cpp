@@ -22,7 +22,7 @@ CameraMessage camera(std::uint64_t number, bool moving) {
 TEST(Viewer, HasNothingDueWithoutCameraOrSize) {
   Viewer one(std::make_shared<const Look>(make_look({"gen:spheres:100"}, {})), {});
   EXPECT_FALSE(one.next(0));
-  one.place({});
+  one.place({}, 0);
   EXPECT_FALSE(one.next(0));
   one.resize({100, 50});
   ASSERT_TRUE(one.next(0));
@@ -31,7 +31,7 @@ TEST(Viewer, HasNothingDueWithoutCameraOrSize) {
 
 TEST(Viewer, RestsSharpThenStill) {
   Viewer one = viewer();
-  one.place({});
+  one.place({}, 0);
   for (const Stage stage : {Stage::sharp, Stage::still}) {
     const auto order = one.next(0);
     ASSERT_TRUE(order);
@@ -44,7 +44,7 @@ TEST(Viewer, RestsSharpThenStill) {
 
 TEST(Viewer, RaysBeginCoarseAndGrow) {
   Viewer one = viewer({{"--engine", "raytrace"}});
-  one.place({});
+  one.place({}, 0);
   one.done(*one.next(0), 0.01, true);
   EXPECT_EQ(one.next(0)->stage, Stage::coarse);
   EXPECT_EQ(one.next(0)->width, 320);
@@ -143,7 +143,7 @@ TEST(Viewer, WaitsForAPageThatIsBehind) {
 
 TEST(Viewer, HiddenPagesGetNothing) {
   Viewer one = viewer();
-  one.place({});
+  one.place({}, 0);
   one.watch({.visible = false});
   EXPECT_FALSE(one.next(0));
   one.watch({.visible = true});
@@ -152,7 +152,7 @@ TEST(Viewer, HiddenPagesGetNothing) {
 
 TEST(Viewer, OrdersOfBeforeDoNotCount) {
   Viewer one = viewer();
-  one.place({});
+  one.place({}, 0);
   const auto order = one.next(0);
   one.resize({640, 360});
   one.done(*order, 0.01, true);
@@ -163,7 +163,7 @@ TEST(Viewer, OrdersOfBeforeDoNotCount) {
 TEST(Viewer, LargePagesGetWhatCanBeMade) {
   Viewer one = viewer();
   one.resize({8192, 8192});
-  one.place({});
+  one.place({}, 0);
   EXPECT_LE(one.next(0)->width * one.next(0)->height, 1 << 24);
 }
 
