@@ -9,6 +9,7 @@
 #include "delaunay/distributed.h"
 #include "delaunay/improve.h"
 #include "delaunay/methods.h"
+#include "delaunay/refine.h"
 #include "image/tone.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
@@ -65,6 +66,10 @@ void list_distributed_methods() {
 
 void list_criteria() {
   print_table("Criteria of flips that improve a mesh (--criterion)", delaunay::criteria());
+}
+
+void list_refinements() {
+  print_table("Refinements: how points are added (--refinement)", delaunay::refinement_methods());
 }
 
 void list_colours() {

@@ -16,6 +16,7 @@ void list_method_options();
 // How ranks share one triangulation.
 void list_distributed_methods();
 void list_criteria();
+void list_refinements();
 void list_networks();
 // The meanings of colours (--color-by), and tone curves.
 void list_colours();

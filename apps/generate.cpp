@@ -1,4 +1,4 @@
-// delray generate points|scene: inputs that the program makes itself.
+// delray generate points|outline|scene: inputs that the program makes itself.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include "apps/options/numbers.h"
 #include "apps/options/outputs.h"
 #include "delaunay/generate.h"
+#include "delaunay/outline.h"
 #include "delaunay/write_points.h"
 #include "files/memory_budget.h"
 #include "scenes/generate.h"
@@ -46,6 +47,21 @@ int generate_points(const GenerateOptions& options) {
   return kDone;
 }
 
+int generate_outline(const GenerateOptions& options) {
+  if (options.list) {
+    print_table("Kinds of outlines (KIND)", delaunay::outline_generators());
+    return kDone;
+  }
+  require(options);
+  find_entry(delaunay::outline_generators(), options.kind, "KIND");
+  if (options.output != "-" && !options.output.ends_with(".poly")) {
+    throw UsageError(fmt::format("-o: '{}' is not a .poly file", options.output));
+  }
+  const std::size_t count = options.count > 0 ? options.count : 1000;
+  write_outline(options.output, delaunay::generate_outline(options.kind, count, options.seed));
+  return kDone;
+}
+
 int generate_scene(const GenerateOptions& options) {
   if (options.list) {
     print_table("Kinds of scenes (KIND)", scenes::generators());
@@ -67,7 +83,7 @@ int generate_scene(const GenerateOptions& options) {
 }  // namespace
 
 void add_generate(CLI::App& program, Session& session) {
-  CLI::App* generate = program.add_subcommand("generate", "Generate points or a scene");
+  CLI::App* generate = program.add_subcommand("generate", "Generate points, an outline or a scene");
   generate->require_subcommand(1);
   const auto options = std::make_shared<GenerateOptions>();
   const auto add = [&](const char* name, const char* description, const char* kind,
@@ -99,6 +115,14 @@ void add_generate(CLI::App& program, Session& session) {
   choose_from(*points, "KIND", names_in(delaunay::point_generators()));
   points->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
       ->check(one_of({"2", "3"}));
+  CLI::App* outline =
+      add("outline", "Generate an outline: points and the segments that bound a part of the plane",
+          "Kind of outline (--list describes them)",
+          "Approximate number of points, such as 10000, 1e6 or 10k (default: 1000)",
+          delaunay::kMostOutlinePoints, ".poly; - for standard output", generate_outline,
+          "generate outline lake -n 10000 -o lake.poly\n"
+          "generate outline country --seed 7 -o country.poly");
+  choose_from(*outline, "KIND", names_in(delaunay::outline_generators()));
   CLI::App* scene =
       add("scene", "Generate a scene", "Kind of scene (--list describes them)",
           "Approximate number of triangles, such as 10000, 1e6 or 10k (default: by the kind)",

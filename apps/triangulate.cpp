@@ -15,6 +15,7 @@
 #include "apps/terminal/progress_bar.h"
 #include "apps/triangulate/beyond_space.h"
 #include "apps/triangulate/improve_mesh.h"
+#include "apps/triangulate/refine_points.h"
 #include "apps/triangulate/run_statistics.h"
 #include "apps/triangulate/triangulate_options.h"
 #include "apps/triangulate_distributed.h"
@@ -181,10 +182,12 @@ int run(Session& session, TriangulateOptions options) {
     list_method_options();
     list_distributed_methods();
     list_criteria();
+    list_refinements();
     return kDone;
   }
   check(session, options);
   if (!options.improve.empty()) return improve_mesh(options);
+  if (is_refined(options)) return refine_points(session, options);
   if (is_beyond_space(options)) return triangulate_beyond_space(session, options);
   tell_left_out(options.input);
   if (options.output.path == "-" && options.how.dim == 3 &&
@@ -264,6 +267,7 @@ void add_triangulate(CLI::App& program, Session& session) {
                      "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"
                      "triangulate points.las -o terrain.tif --cell-size 1\n"
                      "triangulate --improve other.off -o mesh.ply\n"
+                     "triangulate lake.poly --min-angle 25 --max-area 100 -o lake.node\n"
                      "generate points gauss -n 100000 -o - | delray triangulate - -o mesh.vtu");
   command->callback([&session, options, command] {
     options->dim_given = command->count("--dim") > 0;

@@ -24,6 +24,7 @@ enum class Format {
   pcd,  // of the Point Cloud Library
   vtu,
   node,         // points of Triangle and TetGen; the suffix .ele names the pair as well
+  poly,         // points and segments of Triangle
   json_points,  // [[x, y(, z)], ...]
   text,         // rows of numbers: xyz, csv, txt ...
   pack,         // a scene in pages
@@ -38,22 +39,23 @@ struct FormatSign {
 };
 // The usual suffix of a format comes first.
 inline constexpr std::array kFormatSuffixes = {
-    FormatSign{".ply", Format::ply},    FormatSign{".obj", Format::obj},
-    FormatSign{".off", Format::off},    FormatSign{".stl", Format::stl},
-    FormatSign{".gltf", Format::gltf},  FormatSign{".glb", Format::glb},
-    FormatSign{".las", Format::las},    FormatSign{".laz", Format::las},
-    FormatSign{".pcd", Format::pcd},    FormatSign{".vtu", Format::vtu},
-    FormatSign{".node", Format::node},  FormatSign{".ele", Format::node},
-    FormatSign{".xyz", Format::text},   FormatSign{".json", Format::json_points},
-    FormatSign{".csv", Format::text},   FormatSign{".txt", Format::text},
-    FormatSign{".pts", Format::text},   FormatSign{".asc", Format::text},
-    FormatSign{".tsv", Format::text},   FormatSign{".png", Format::image},
-    FormatSign{".jpg", Format::image},  FormatSign{".jpeg", Format::image},
-    FormatSign{".tif", Format::image},  FormatSign{".tiff", Format::image},
-    FormatSign{".exr", Format::image},  FormatSign{".hdr", Format::image},
-    FormatSign{".bmp", Format::image},  FormatSign{".tga", Format::image},
-    FormatSign{".pgm", Format::image},  FormatSign{".ppm", Format::image},
-    FormatSign{".webp", Format::image}, FormatSign{".pack", Format::pack},
+    FormatSign{".ply", Format::ply},          FormatSign{".obj", Format::obj},
+    FormatSign{".off", Format::off},          FormatSign{".stl", Format::stl},
+    FormatSign{".gltf", Format::gltf},        FormatSign{".glb", Format::glb},
+    FormatSign{".las", Format::las},          FormatSign{".laz", Format::las},
+    FormatSign{".pcd", Format::pcd},          FormatSign{".vtu", Format::vtu},
+    FormatSign{".node", Format::node},        FormatSign{".ele", Format::node},
+    FormatSign{".poly", Format::poly},        FormatSign{".xyz", Format::text},
+    FormatSign{".json", Format::json_points}, FormatSign{".csv", Format::text},
+    FormatSign{".txt", Format::text},         FormatSign{".pts", Format::text},
+    FormatSign{".asc", Format::text},         FormatSign{".tsv", Format::text},
+    FormatSign{".png", Format::image},        FormatSign{".jpg", Format::image},
+    FormatSign{".jpeg", Format::image},       FormatSign{".tif", Format::image},
+    FormatSign{".tiff", Format::image},       FormatSign{".exr", Format::image},
+    FormatSign{".hdr", Format::image},        FormatSign{".bmp", Format::image},
+    FormatSign{".tga", Format::image},        FormatSign{".pgm", Format::image},
+    FormatSign{".ppm", Format::image},        FormatSign{".webp", Format::image},
+    FormatSign{".pack", Format::pack},
 };
 
 // Formats without a mark of their own are recognized by what they hold.

@@ -14,6 +14,7 @@
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
 #include "apps/triangulate/beyond_space.h"
+#include "apps/triangulate/refine_points.h"
 #include "delaunay/distributed.h"
 #include "delaunay/improve.h"
 #include "delaunay/methods.h"
@@ -135,11 +136,20 @@ void check(const Session& session, TriangulateOptions& options) {
   if (output == OutputKind::none && options.statistics.empty()) {
     throw UsageError("triangulate: -o MESH is missing");
   }
-  if (!options.improve.empty()) return check_improve(session, options);
+  if (!options.improve.empty()) {
+    if (options.refinement.given()) {
+      throw UsageError("--improve adds no points: not with --min-angle and --max-area");
+    }
+    return check_improve(session, options);
+  }
   if (!options.criterion.empty()) {
     throw UsageError("--criterion: only --improve has a criterion of flips");
   }
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
+  if (is_refined(options)) return check_refine(session, options);
+  if (options.refinement.given()) {
+    throw UsageError("--refinement and --whole: only with --min-angle or --max-area");
+  }
   if (is_beyond_space(options)) return check_beyond_space(session, options);
   check_output(options.output, options.input, options.how.dim);
   if (options.max_error && output == OutputKind::folder) {
@@ -226,6 +236,7 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
   command.add_option("--criterion", options.criterion,
                      "What --improve flips by: circle (default), or angle in 2D");
   choose_from(command, "--criterion", names_in(delaunay::criteria()));
+  add_refine_options(command, options.refinement);
   add_launch_options(command, options.launch);
   add_tiles_options(command, options.tiles);
   command

@@ -17,6 +17,15 @@ class App;
 
 namespace delray::apps {
 
+// Points that are added: delaunay/refine.h.
+struct RefinementChoice {
+  std::optional<double> min_angle, max_area;
+  std::string method;  // empty: auto
+  bool whole = false;  // triangles outside of the domain, too
+
+  bool given() const { return min_angle || max_area || !method.empty() || whole; }
+};
+
 // What the command line says.
 struct TriangulateOptions {
   PointInput input;
@@ -29,6 +38,7 @@ struct TriangulateOptions {
   std::string distributed;  // a method of delaunay/distributed.h; empty: tiles
   std::string improve;      // a mesh, in place of points; empty: none
   std::string criterion;    // of delaunay/improve.h; empty: circle
+  RefinementChoice refinement;
   bool dim_given = false;
   bool makers = false;  // go to the mesh
   bool list = false;

@@ -16,6 +16,7 @@ std::size_t text_size(Format format, const std::string& content) {
     case Format::obj:
     case Format::off:
     case Format::node:
+    case Format::poly:
       return content.size();
     case Format::ply: {
       const std::size_t end = content.find(kEnd);

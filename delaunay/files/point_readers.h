@@ -5,6 +5,7 @@
 
 #include "delaunay/dimensions.h"
 #include "delaunay/files/input.h"
+#include "delaunay/outline.h"
 #include "delaunay/points.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/read_points.h"
@@ -21,6 +22,7 @@ PointCloud read_las_points(const Input& input);
 PointCloud read_pcd_points(const Input& input);
 PointCloud read_json_points(const Input& input);
 PointCloud read_node_points(const Input& input);
+PointCloud read_poly_points(const Input& input);
 PointCloud read_vtu_points(const Input& input);
 
 // The table: which reader reads which format.
@@ -43,6 +45,8 @@ inline constexpr std::array kPointReaders = {
                 ".json", &read_json_points},
     PointReader{files::Format::node, "NODE", "points of Triangle and TetGen", ".node",
                 &read_node_points},
+    PointReader{files::Format::poly, "POLY", "the points of an outline of Triangle", ".poly",
+                &read_poly_points},
     PointReader{files::Format::vtu, "VTU", "the points of an unstructured grid that delray wrote",
                 ".vtu", &read_vtu_points},
 };
@@ -54,6 +58,8 @@ PointMesh read_stl_mesh(const Input& input);
 PointMesh read_vtu_mesh(const Input& input);
 // `input` is the .node file, `elements` the .ele file.
 PointMesh read_node_mesh(const Input& input, const Input& elements);
+// As of outline.h; `nodes` is the .node file beside it, null where there is none.
+Outline read_outline(const Input& input, const Input* nodes);
 // As of dimensions.h.
 PointTable read_point_table(const Input& input);
 TableMesh read_table_mesh(const Input& input, const Input& elements);

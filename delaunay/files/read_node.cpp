@@ -3,29 +3,23 @@
 // "number corners attributes". Numbers begin with 0 or 1. Of points in the plane the first
 // attribute is taken as z.
 #include "delaunay/dimensions.h"
+#include "delaunay/files/node_table.h"
 #include "delaunay/files/point_readers.h"
-#include "delaunay/files/text_rows.h"
 
 namespace delray::delaunay {
 namespace {
 
-struct Table {
-  RowIndex rows;
-  std::int64_t columns = 0;     // dimension of points, corners of elements
-  std::int64_t attributes = 0;  // per row
-};
-
-Table find_table(const Input& input, const char* what) {
-  const RowIndex first = index_rows(input, {}, 1, is_data_row);
+NodeTable find_rows(const Input& input, const char* what, TextPlace begin, bool has_columns) {
+  const RowIndex first = index_rows(input, begin, 1, is_data_row);
   if (first.count == 0) fail(input, "", std::string("no ") + what);
   TextPlace place = first.blocks[0];
   const std::size_t number = place.line;
   Fields fields(input, take_line(input.content, place), number);
   const std::int64_t count = fields.integer();
-  Table table;
-  table.columns = fields.integer();
+  NodeTable table;
+  if (has_columns) table.columns = fields.integer();
   std::string_view attributes;
-  if (fields.next(attributes) && !parse_integer(attributes, table.attributes)) {
+  if (has_columns && fields.next(attributes) && !parse_integer(attributes, table.attributes)) {
     fields.fail("not a number of attributes");
   }
   if (count < 0 || table.attributes < 0) fields.fail("a negative number");
@@ -37,8 +31,17 @@ Table find_table(const Input& input, const char* what) {
   return table;
 }
 
-// The number of the first row: 0 or 1.
-std::int64_t first_number(const Input& input, const Table& table) {
+}  // namespace
+
+NodeTable find_node_table(const Input& input, const char* what, TextPlace begin) {
+  return find_rows(input, what, begin, true);
+}
+
+NodeTable find_counted_rows(const Input& input, const char* what, TextPlace begin) {
+  return find_rows(input, what, begin, false);
+}
+
+std::int64_t first_number(const Input& input, const NodeTable& table) {
   if (table.rows.count == 0) return 0;
   TextPlace place = table.rows.blocks[0];
   const std::size_t line_number = place.line;
@@ -48,7 +51,7 @@ std::int64_t first_number(const Input& input, const Table& table) {
   return number;
 }
 
-PointCloud read_points_of(const Input& input, const Table& table, std::int64_t base) {
+PointCloud read_points_of(const Input& input, const NodeTable& table, std::int64_t base) {
   if (table.columns != 2 && table.columns != 3) {
     fail(input, "",
          table.columns > 3 && table.columns <= kMostDimensions
@@ -69,8 +72,10 @@ PointCloud read_points_of(const Input& input, const Table& table, std::int64_t b
   return cloud;
 }
 
+namespace {
+
 // The corners of elements, rows of `points` points whose numbers begin with `base`.
-std::vector<std::uint32_t> read_elements(const Input& elements, const Table& table,
+std::vector<std::uint32_t> read_elements(const Input& elements, const NodeTable& table,
                                          std::int64_t base, std::size_t points) {
   const auto corners = static_cast<std::size_t>(table.columns);
   std::vector<std::uint32_t> vertices;
@@ -89,7 +94,7 @@ std::vector<std::uint32_t> read_elements(const Input& elements, const Table& tab
   return vertices;
 }
 
-PointTable read_table_of(const Input& input, const Table& table, std::int64_t base) {
+PointTable read_table_of(const Input& input, const NodeTable& table, std::int64_t base) {
   if (table.columns < 2 || table.columns > kMostDimensions) {
     fail(input, "",
          "points of dimension 2 to " + std::to_string(kMostDimensions) + " are expected, not " +
@@ -112,16 +117,16 @@ PointTable read_table_of(const Input& input, const Table& table, std::int64_t ba
 }  // namespace
 
 PointTable read_point_table(const Input& input) {
-  const Table table = find_table(input, "points");
+  const NodeTable table = find_node_table(input, "points");
   return read_table_of(input, table, first_number(input, table));
 }
 
 TableMesh read_table_mesh(const Input& input, const Input& elements) {
-  const Table table = find_table(input, "points");
+  const NodeTable table = find_node_table(input, "points");
   const std::int64_t base = first_number(input, table);
   TableMesh mesh;
   mesh.points = read_table_of(input, table, base);
-  const Table simplices = find_table(elements, "elements");
+  const NodeTable simplices = find_node_table(elements, "elements");
   if (simplices.columns != table.columns + 1) {
     fail(elements, "",
          "elements of " + std::to_string(table.columns + 1) + " corners are expected, not " +
@@ -133,16 +138,16 @@ TableMesh read_table_mesh(const Input& input, const Input& elements) {
 }
 
 PointCloud read_node_points(const Input& input) {
-  const Table table = find_table(input, "points");
+  const NodeTable table = find_node_table(input, "points");
   return read_points_of(input, table, first_number(input, table));
 }
 
 PointMesh read_node_mesh(const Input& input, const Input& elements) {
-  const Table points = find_table(input, "points");
+  const NodeTable points = find_node_table(input, "points");
   const std::int64_t base = first_number(input, points);
   PointMesh mesh;
   mesh.points = read_points_of(input, points, base);
-  const Table table = find_table(elements, "elements");
+  const NodeTable table = find_node_table(elements, "elements");
   if (table.columns != 3 && table.columns != 4) {
     fail(elements, "", "elements of 3 or 4 corners are expected");
   }

@@ -22,6 +22,16 @@ PointMesh read_elements(const Input& elements) {
   return read_node_mesh({"points", "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n"}, elements);
 }
 
+// With segments between points that are there.
+PointCloud read_poly_outline(const Input& input) {
+  const Input nodes{"points", "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n"};
+  const Outline outline = read_outline(input, &nodes);
+  for (const auto& segment : outline.segments) {
+    for (const std::uint32_t row : segment) EXPECT_LT(row, outline.points.size());
+  }
+  return outline.points;
+}
+
 // Of an octree the nodes of a part of it.
 PointCloud read_octree(const Input& input) {
   PointFilter filter;
@@ -79,6 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Readers, Corpus,
                                          Reader{"read_pcd", &read_pcd_points, nullptr},
                                          Reader{"read_json", &read_json_points, nullptr},
                                          Reader{"read_node", &read_node_points, nullptr},
+                                         Reader{"read_poly", &read_poly_outline, nullptr},
                                          Reader{"read_ele", nullptr, &read_elements},
                                          Reader{"read_vtu", &read_vtu_points, &read_vtu_mesh}),
                          [](const auto& instance) { return std::string(instance.param.name); });

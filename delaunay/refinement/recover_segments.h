@@ -1,0 +1,23 @@
+// Making segments edges of a triangulation by cutting them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "delaunay/refine.h"
+#include "delaunay/refinement/refinement_mesh.h"
+
+namespace delray::delaunay::internal {
+
+// Inserts the middle of each segment that is no edge, until the pieces of all are edges, and marks
+// them (Ruppert 1995). Where a vertex lies on a segment, as closely as the mesh's tolerance, the
+// segment goes through it; where two cross, both get a vertex. Segments with equal ends are left
+// out. The vertices that this adds lie on no segment: pieces are segments from now on.
+//
+// `most_vertices` may not be exceeded. Throws std::length_error. REQUIRES: a triangulation of the
+// vertices without marks.
+void recover_segments(RefinementMesh& mesh, std::span<const SegmentEnds> segments,
+                      std::size_t most_vertices, RefineCounts& counts);
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,364 @@
+// The triangulation of the points, its segments made edges, its domain found, its pieces and
+// triangles cut; then the triangles as rows.
+#include "delaunay/refine.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "delaunay/flip/flip_2d.h"
+#include "delaunay/insertion/walk.h"
+#include "delaunay/interpolate.h"
+#include "delaunay/mesh/arguments.h"
+#include "delaunay/mesh/build_mesh.h"
+#include "delaunay/mesh/equal_points.h"
+#include "delaunay/predicates/conflict.h"
+#include "delaunay/refinement/recover_segments.h"
+#include "delaunay/refinement/refinement_runs.h"
+
+namespace delray::delaunay {
+namespace {
+
+using internal::RefinementMesh;
+using internal::SegmentEnds;
+
+// Products of four coordinates neither overflow nor underflow.
+constexpr double kLargestCoordinate = 0x1p200;
+constexpr std::size_t kMostVertices = kMaximumSimplices / 2 - 2;
+
+void check(const Outline& outline, const RefineOptions& options) {
+  if (!(options.min_angle >= 0 && options.min_angle <= kLargestMinAngle)) {
+    throw std::invalid_argument("the smallest angle is 0 to " +
+                                std::to_string(static_cast<int>(kLargestMinAngle)) + " degrees");
+  }
+  if (!(options.max_area >= 0)) throw std::invalid_argument("the largest area is not negative");
+  for (std::size_t row = 0; row < outline.points.size(); ++row) {
+    const glm::dvec3& p = outline.points.positions[row];
+    for (const double coordinate : {p.x, p.y}) {
+      if (std::abs(coordinate) < kLargestCoordinate) continue;
+      throw std::invalid_argument("row " + std::to_string(row) +
+                                  " has a coordinate that is not finite or above 1e60");
+    }
+  }
+  for (const auto& segment : outline.segments) {
+    for (const std::uint32_t row : segment) {
+      if (row >= outline.points.size()) {
+        throw std::invalid_argument("a segment joins row " + std::to_string(row) +
+                                    ", which is not there");
+      }
+    }
+  }
+}
+
+std::size_t most_vertices(const RefineOptions& options) {
+  return options.max_points == 0 ? kMostVertices : std::min(options.max_points, kMostVertices);
+}
+
+// Whether all points are on one line.
+bool is_flat(const Mesh<2>& mesh) {
+  for (SimplexNumber t = 0; t < mesh.size(); ++t) {
+    if (!mesh.is_dead(t) && !mesh.is_ghost(t)) return false;
+  }
+  return true;
+}
+
+// A refinement under way.
+struct Task {
+  const Outline& outline;
+  const RefineOptions& options;
+  RefinementMesh mesh;
+  std::vector<std::uint32_t> rows;  // of the vertices that the input has
+  RefineCounts counts;
+};
+
+void take_mesh(Task& task, BuiltMesh<2>&& built) {
+  RefinementMesh& mesh = task.mesh;
+  mesh.triangles = static_cast<SimplexNumber>(built.mesh.size());
+  mesh.mesh = std::move(built.mesh);
+  task.rows.assign(built.rows.data(), built.rows.data() + built.rows.size());
+  mesh.reserve(task.rows.size());
+  mesh.vertices = static_cast<VertexNumber>(task.rows.size());
+  double largest = 0;
+  for (VertexNumber v = 0; v < mesh.vertices; ++v) {
+    const glm::dvec3& p = task.outline.points.positions[task.rows[v]];
+    mesh.points[v] = {p.x + 0.0, p.y + 0.0};
+    mesh.ends[v] = internal::kOnNoSegment;
+    mesh.acute[v] = 0;
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+  }
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) mesh.set_marks(t, 0);
+  constexpr double kUnits = 64;  // of rounding
+  mesh.tolerance = kUnits * 0x1p-53 * largest;
+}
+
+// Those of the outline, or the edges of the hull.
+std::vector<SegmentEnds> segments_of(const Task& task) {
+  std::vector<SegmentEnds> segments;
+  const RefinementMesh& mesh = task.mesh;
+  if (task.outline.segments.empty()) {
+    for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+      if (mesh.mesh.is_dead(t)) continue;
+      for (unsigned k = 0; k < 3; ++k) {
+        const CornerNumber corner = corner_of(t, k);
+        if (mesh.mesh.vertex(corner) != kInfiniteVertex) continue;
+        segments.push_back(
+            {mesh.mesh.vertex(next_corner(corner)), mesh.mesh.vertex(previous_corner(corner))});
+      }
+    }
+    return segments;
+  }
+  const std::vector<std::uint32_t> lowest =
+      lowest_equal_rows(view(task.outline.points.positions), 2);
+  std::vector<VertexNumber> vertex_of(lowest.size());
+  for (VertexNumber v = 0; v < task.rows.size(); ++v) vertex_of[task.rows[v]] = v;
+  for (const auto& [a, b] : task.outline.segments) {
+    segments.push_back({vertex_of[lowest[a]], vertex_of[lowest[b]]});
+  }
+  return segments;
+}
+
+// Marks and lists the corners between neighbouring segments.
+std::vector<SmallCorner> find_small_corners(Task& task) {
+  constexpr double kSmall = 60 * (1 - 0x1p-40);
+  RefinementMesh& mesh = task.mesh;
+  std::vector<SmallCorner> found;
+  const auto turn = [&](CornerNumber corner) {
+    return next_corner(mesh.mesh.neighbour(next_corner(corner)));
+  };
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    for (unsigned k = 0; k < 3; ++k) {
+      const CornerNumber corner = corner_of(t, k);
+      if (!mesh.is_segment(previous_corner(corner))) continue;
+      const VertexNumber v = mesh.mesh.vertex(corner);
+      if (v == kInfiniteVertex) continue;
+      CornerNumber last = corner;
+      while (!mesh.is_segment(next_corner(last))) last = turn(last);
+      const glm::dvec2 first_side = mesh.at(next_corner(corner)) - mesh.points[v];
+      const glm::dvec2 last_side = mesh.at(previous_corner(last)) - mesh.points[v];
+      const double sine = first_side.x * last_side.y - first_side.y * last_side.x;
+      const double degrees =
+          std::atan2(sine, glm::dot(first_side, last_side)) * (180 / std::numbers::pi);
+      if (degrees <= 0 || degrees >= kSmall) continue;
+      mesh.acute[v] = 1;
+      found.push_back({v, degrees});
+    }
+  }
+  return found;
+}
+
+// Takes what can be reached from the triangles, not over segments, out of the domain.
+void take_out(RefinementMesh& mesh, std::vector<SimplexNumber> reached) {
+  const auto take = [&](SimplexNumber t) {
+    mesh.set_marks(t, static_cast<std::uint8_t>(mesh.marks(t) & ~RefinementMesh::kInside));
+  };
+  for (const SimplexNumber t : reached) take(t);
+  while (!reached.empty()) {
+    const SimplexNumber t = reached.back();
+    reached.pop_back();
+    for (unsigned k = 0; k < 3; ++k) {
+      const CornerNumber corner = corner_of(t, k);
+      const SimplexNumber next = simplex_of(mesh.mesh.neighbour(corner));
+      if (mesh.is_segment(corner) || !mesh.is_inside(next)) continue;
+      take(next);
+      reached.push_back(next);
+    }
+  }
+}
+
+void find_domain(Task& task) {
+  RefinementMesh& mesh = task.mesh;
+  std::vector<SimplexNumber> outside;
+  SimplexNumber finite = 0;
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    if (mesh.mesh.is_dead(t)) continue;
+    mesh.set_marks(t, static_cast<std::uint8_t>(mesh.marks(t) | RefinementMesh::kInside));
+    if (mesh.mesh.is_ghost(t)) {
+      outside.push_back(t);
+    } else {
+      finite = t;
+    }
+  }
+  take_out(mesh, std::move(outside));
+  std::uint32_t random = 1;
+  for (const glm::dvec2& hole : task.outline.holes) {
+    const Place place = walk(mesh.mesh, mesh.places(), finite, hole, random);
+    if (mesh.is_inside(place.simplex)) take_out(mesh, {place.simplex});
+  }
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    if (!mesh.mesh.is_dead(t) && mesh.is_inside(t)) return;
+  }
+  throw std::invalid_argument("the segments enclose nothing");
+}
+
+// Flips as internal::flip() does, and keeps marks of edges. Those of the flipped edge go.
+void flip_with_marks(RefinementMesh& mesh, CornerNumber corner) {
+  const CornerNumber beyond = mesh.mesh.neighbour(corner);
+  const CornerNumber right = next_corner(corner), left = previous_corner(corner);
+  const CornerNumber beyond_right = previous_corner(beyond), beyond_left = next_corner(beyond);
+  const bool near_left = mesh.is_segment(right), near_right = mesh.is_segment(left),
+             far_left = mesh.is_segment(beyond_right), far_right = mesh.is_segment(beyond_left);
+  internal::flip(mesh.mesh, corner);
+  const auto bit = [](CornerNumber at, bool is_one) {
+    return static_cast<std::uint8_t>(is_one ? 1U << (at & 3U) : 0U);
+  };
+  const auto inside = [&](CornerNumber at) {
+    return static_cast<std::uint8_t>(mesh.marks(simplex_of(at)) & RefinementMesh::kInside);
+  };
+  mesh.set_marks(
+      simplex_of(corner),
+      static_cast<std::uint8_t>(inside(corner) | bit(corner, far_right) | bit(left, near_right)));
+  mesh.set_marks(simplex_of(beyond),
+                 static_cast<std::uint8_t>(inside(beyond) | bit(beyond, near_left) |
+                                           bit(beyond_right, far_left)));
+}
+
+// Whatever pieces are left that could not be cut: the result is the triangulation of its points.
+void make_delaunay(RefinementMesh& mesh) {
+  std::vector<CornerNumber> suspects;
+  const auto is_wrong = [&](CornerNumber corner) {
+    const VertexNumber v = mesh.mesh.vertex(corner);
+    return v != kInfiniteVertex &&
+           conflict(mesh.mesh, mesh.places(), simplex_of(mesh.mesh.neighbour(corner)),
+                    mesh.points[v]);
+  };
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    if (mesh.mesh.is_dead(t)) continue;
+    for (unsigned k = 0; k < 3; ++k) {
+      const CornerNumber corner = corner_of(t, k);
+      if (corner < mesh.mesh.neighbour(corner) && is_wrong(corner)) suspects.push_back(corner);
+    }
+  }
+  while (!suspects.empty()) {
+    const CornerNumber corner = suspects.back();
+    suspects.pop_back();
+    if (!is_wrong(corner)) continue;
+    const SimplexNumber across = simplex_of(mesh.mesh.neighbour(corner));
+    flip_with_marks(mesh, corner);
+    for (const SimplexNumber t : {simplex_of(corner), across}) {
+      for (unsigned k = 0; k < 3; ++k) suspects.push_back(corner_of(t, k));
+    }
+  }
+}
+
+std::uint32_t row_of(const Task& task, VertexNumber v) {
+  const auto given = static_cast<VertexNumber>(task.rows.size());
+  return v < given ? task.rows[v]
+                   : static_cast<std::uint32_t>(task.outline.points.size() + (v - given));
+}
+
+// Heights of the added points: along segments between their ends, else of the given triangulation.
+void add_heights(const Task& task, const Triangulation& given, Refined& refined) {
+  const RefinementMesh& mesh = task.mesh;
+  const std::size_t n = task.outline.points.size();
+  std::vector<double> heights(n);
+  for (std::size_t row = 0; row < n; ++row) heights[row] = refined.points[row].z;
+  const Query query(view(task.outline.points.positions), given);
+  for (auto v = static_cast<VertexNumber>(task.rows.size()); v < mesh.vertices; ++v) {
+    glm::dvec3& p = refined.points[row_of(task, v)];
+    if (mesh.ends[v] != internal::kOnNoSegment) {
+      const glm::dvec3& a = refined.points[row_of(task, mesh.ends[v][0])];
+      const glm::dvec3& b = refined.points[row_of(task, mesh.ends[v][1])];
+      const double length = glm::length(glm::dvec2(b) - glm::dvec2(a));
+      p.z = a.z + glm::length(glm::dvec2(p) - glm::dvec2(a)) / length * (b.z - a.z);
+    } else {
+      p.z = interpolate_linear(query, heights, p).value_or(0);
+    }
+  }
+}
+
+Refined result_of(Task& task) {
+  RefinementMesh& mesh = task.mesh;
+  Refined refined;
+  refined.points = task.outline.points.positions;
+  for (auto v = static_cast<VertexNumber>(task.rows.size()); v < mesh.vertices; ++v) {
+    refined.points.emplace_back(mesh.points[v], 0);
+  }
+  Triangulation& result = refined.triangulation;
+  result.distinct = mesh.vertices;
+  result.vertices.reserve(std::size_t{3} * mesh.triangles);
+  refined.inside.reserve(mesh.triangles);
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    if (mesh.mesh.is_dead(t)) continue;
+    for (unsigned k = 0; k < 3; ++k) {
+      const CornerNumber corner = corner_of(t, k);
+      if (!mesh.is_segment(corner) || corner > mesh.mesh.neighbour(corner)) continue;
+      refined.segments.push_back({row_of(task, mesh.mesh.vertex(next_corner(corner))),
+                                  row_of(task, mesh.mesh.vertex(previous_corner(corner)))});
+    }
+    if (mesh.mesh.is_ghost(t)) {
+      ++result.hull_facets;
+      continue;
+    }
+    for (unsigned k = 0; k < 3; ++k)
+      result.vertices.push_back(row_of(task, mesh.mesh.vertex(t, k)));
+    refined.inside.push_back(mesh.is_inside(t) ? 1 : 0);
+  }
+  return refined;
+}
+
+// Triangles of the domain that are below the bound.
+std::uint64_t count_excepted(const RefinementMesh& mesh, const internal::TriangleBounds& bounds) {
+  std::uint64_t count = 0;
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    if (mesh.mesh.is_dead(t) || !mesh.is_inside(t)) continue;
+    const glm::dvec2 &a = mesh.points[mesh.mesh.vertex(t, 0)],
+                     &b = mesh.points[mesh.mesh.vertex(t, 1)],
+                     &c = mesh.points[mesh.mesh.vertex(t, 2)];
+    if (bounds.is_skinny(internal::shape_of_triangle(a, b, c))) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+Refined refine(const Outline& outline, const RefineOptions& options) {
+  check(outline, options);
+  const auto run = internal::refinement_run(options.method);
+  Task task{outline, options, {}, {}, {}};
+  Options how;
+  how.threads = options.threads;
+  BuiltMesh<2> built = build_mesh<2>(view(outline.points.positions), how);
+  const std::size_t most = most_vertices(options);
+  if (is_flat(built.mesh)) {
+    Refined flat;
+    flat.points = outline.points.positions;
+    flat.triangulation.distinct = built.distinct;
+    return flat;
+  }
+  take_mesh(task, std::move(built));
+  std::optional<Triangulation> given;
+  if (outline.points.has_z) given = result_of(task).triangulation;
+  RefinementMesh& mesh = task.mesh;
+  recover_segments(mesh, segments_of(task), most, task.counts);
+  std::vector<SmallCorner> corners = find_small_corners(task);
+  find_domain(task);
+  const internal::TriangleBounds bounds(options.min_angle, options.max_area);
+  run(mesh, bounds, {options.threads, most, options.progress}, task.counts);
+  make_delaunay(mesh);
+  task.counts.excepted = count_excepted(mesh, bounds);
+  Refined refined = result_of(task);
+  for (SmallCorner& corner : corners) corner.row = row_of(task, corner.row);
+  refined.small_corners = std::move(corners);
+  refined.counts = task.counts;
+  if (given) add_heights(task, *given, refined);
+  return refined;
+}
+
+Triangulation domain_of(const Refined& refined) {
+  Triangulation domain;
+  domain.distinct = refined.triangulation.distinct;
+  const std::vector<std::uint32_t>& vertices = refined.triangulation.vertices;
+  domain.vertices.reserve(vertices.size());
+  for (std::size_t t = 0; t < refined.inside.size(); ++t) {
+    if (refined.inside[t] == 0) continue;
+    domain.vertices.insert(domain.vertices.end(),
+                           vertices.begin() + static_cast<std::ptrdiff_t>(3 * t),
+                           vertices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
+  }
+  return domain;
+}
+
+}  // namespace delray::delaunay

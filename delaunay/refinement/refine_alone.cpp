@@ -1,0 +1,51 @@
+// Ruppert's refinement by one thread that is alone with the mesh: pieces of segments before
+// triangles, the worst triangle first.
+#include <stdexcept>
+#include <string>
+
+#include "delaunay/refinement/refinement_runs.h"
+#include "delaunay/refinement/refiner.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+class SoleAccess {
+ public:
+  SoleAccess(RefinementMesh& mesh, const RefinementLimits& limits)
+      : mesh_(&mesh), limits_(&limits) {}
+
+  static bool acquire(SimplexNumber) { return true; }
+  static void release() {}
+  bool prepare() {
+    if (mesh_->vertices >= limits_->most_vertices) {
+      throw std::length_error("refinement takes more than " +
+                              std::to_string(limits_->most_vertices) + " points");
+    }
+    mesh_->reserve(1);
+    return true;
+  }
+  VertexNumber vertex() {
+    if (limits_->progress != nullptr) limits_->progress->advance();
+    return mesh_->vertices++;
+  }
+  SimplexNumber triangle() { return mesh_->triangles++; }
+
+ private:
+  RefinementMesh* mesh_;
+  const RefinementLimits* limits_;
+};
+
+}  // namespace
+
+void refine_alone(RefinementMesh& mesh, const TriangleBounds& bounds,
+                  const RefinementLimits& limits, RefineCounts& counts) {
+  Refiner<SoleAccess> refiner(mesh, bounds, SoleAccess(mesh, limits));
+  suspect_all(mesh, refiner, 0, mesh.triangles);
+  while (refiner.step()) {
+  }
+  counts.on_segments += refiner.counts().on_segments;
+  counts.inside += refiner.counts().inside;
+  counts.too_fine += refiner.counts().too_fine;
+}
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,47 @@
+// The table of refinements.
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "delaunay/refine.h"
+#include "delaunay/refinement/refinement_runs.h"
+
+namespace delray::delaunay {
+namespace {
+
+struct Row {
+  RefinementMethod method;
+  internal::RefinementRun run;
+};
+
+constexpr std::array kRows = {
+    Row{{"ruppert", "one thread, the worst triangle first (Ruppert 1995)"},
+        &internal::refine_alone},
+    Row{{"okusanya",
+         "threads that lock the triangles of a cavity, or are denied (Okusanya and Peraire 1996)",
+         true},
+        &internal::refine_with_locks},
+};
+
+constexpr auto kMethods = [] {
+  std::array<RefinementMethod, kRows.size()> methods;
+  for (std::size_t i = 0; i < kRows.size(); ++i) methods[i] = kRows[i].method;
+  return methods;
+}();
+
+}  // namespace
+
+std::span<const RefinementMethod> refinement_methods() { return kMethods; }
+
+internal::RefinementRun internal::refinement_run(std::string_view name) {
+  if (name == "auto") name = kRows.front().method.name;
+  std::string names;
+  for (const Row& row : kRows) {
+    if (row.method.name == name) return row.run;
+    names += " " + std::string(row.method.name);
+  }
+  throw std::invalid_argument("no refinement is called \"" + std::string(name) + "\"; legal are" +
+                              names);
+}
+
+}  // namespace delray::delaunay

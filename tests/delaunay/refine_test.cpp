@@ -1,0 +1,297 @@
+// Refinements keep their promises: the result is the Delaunay triangulation of its points, segments
+// are chains of its edges, and triangles of the domain are as they should be but for small corners.
+#include "delaunay/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+#include "delaunay/generate.h"
+#include "delaunay/quality.h"
+#include "delaunay/verify.h"
+#include "parallel/arena.h"
+#include "tests/delaunay/hard_points.h"
+
+namespace delray::delaunay {
+namespace {
+
+Outline polygon(const std::vector<glm::dvec2>& corners) {
+  Outline outline;
+  const auto n = static_cast<std::uint32_t>(corners.size());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    outline.points.positions.emplace_back(corners[i], 0);
+    outline.segments.push_back({i, (i + 1) % n});
+  }
+  return outline;
+}
+Outline square() { return polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}); }
+
+// Adds a segment with points of its own.
+void add_segment(Outline& outline, const glm::dvec2& a, const glm::dvec2& b) {
+  const auto first = static_cast<std::uint32_t>(outline.points.size());
+  outline.points.positions.emplace_back(a, 0);
+  outline.points.positions.emplace_back(b, 0);
+  outline.segments.push_back({first, first + 1});
+}
+
+double area_of(const Refined& refined) {
+  double area = 0;
+  const Triangulation domain = domain_of(refined);
+  for (std::size_t t = 0; t < domain.size(); ++t) {
+    const glm::dvec2 a = refined.points[domain.vertices[3 * t]],
+                     b = glm::dvec2(refined.points[domain.vertices[3 * t + 1]]) - a,
+                     c = glm::dvec2(refined.points[domain.vertices[3 * t + 2]]) - a;
+    area += (b.x * c.y - b.y * c.x) / 2;
+  }
+  return area;
+}
+
+double length_of(const std::vector<glm::dvec3>& points,
+                 const std::vector<std::array<std::uint32_t, 2>>& segments) {
+  double length = 0;
+  for (const auto& [a, b] : segments) {
+    length += glm::length(glm::dvec2(points[a]) - glm::dvec2(points[b]));
+  }
+  return length;
+}
+
+double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+  const double t = glm::dot(p - a, b - a) / glm::dot(b - a, b - a);
+  return glm::length(p - glm::mix(a, b, std::clamp(t, 0.0, 1.0)));
+}
+
+void expect_refined(const Outline& outline, const RefineOptions& options, const Refined& refined) {
+  const std::size_t n = outline.points.size();
+  ASSERT_GE(refined.points.size(), n);
+  for (std::size_t row = 0; row < n; ++row) {
+    ASSERT_EQ(refined.points[row], outline.points.positions[row]);
+  }
+  const Verdict verdict = verify_triangles(view(refined.points), refined.triangulation.vertices);
+  ASSERT_TRUE(verdict.valid && verdict.delaunay && verdict.canonical) << verdict.reason;
+  // Pieces are edges.
+  std::set<std::array<std::uint32_t, 2>> edges;
+  const std::vector<std::uint32_t>& vertices = refined.triangulation.vertices;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    edges.insert({vertices[i], vertices[i / 3 * 3 + (i + 1) % 3]});
+  }
+  for (const auto& [a, b] : refined.segments) {
+    EXPECT_TRUE(edges.contains({a, b}) || edges.contains({b, a})) << a << ' ' << b;
+  }
+  // Angles and areas.
+  std::uint64_t below = 0;
+  for (std::size_t t = 0; t < refined.triangulation.size(); ++t) {
+    if (refined.inside[t] == 0) continue;
+    const Triangulation one{2,
+                            {vertices.begin() + static_cast<std::ptrdiff_t>(3 * t),
+                             vertices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3)}};
+    if (quality(view(refined.points), one).min_angle < options.min_angle) ++below;
+    if (options.max_area > 0) {
+      Refined alone{refined.points, one, {1}, {}, {}, {}};
+      EXPECT_LE(area_of(alone), options.max_area);
+    }
+  }
+  EXPECT_EQ(below, refined.counts.excepted);
+  EXPECT_EQ(refined.counts.too_fine, 0U);
+  EXPECT_TRUE(below == 0 || !refined.small_corners.empty());
+}
+
+Refined checked(const Outline& outline, const RefineOptions& options) {
+  Refined refined = refine(outline, options);
+  expect_refined(outline, options, refined);
+  return refined;
+}
+
+TEST(Refine, ReachesTheAngleOnOutlinesAndKeepsThem) {
+  for (const OutlineGenerator& kind : outline_generators()) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      for (const double angle : {20.0, 25.0, 30.0}) {
+        SCOPED_TRACE(std::string(kind.name) + ", seed " + std::to_string(seed) + ", angle " +
+                     std::to_string(angle));
+        const Outline outline = generate_outline(kind.name, 150, seed);
+        const Refined refined = checked(outline, {.min_angle = angle});
+        const double length = length_of(outline.points.positions, outline.segments);
+        EXPECT_NEAR(length_of(refined.points, refined.segments), length, 1e-11 * length);
+        for (const auto& piece : refined.segments) {
+          double nearest = std::numeric_limits<double>::infinity();
+          const glm::dvec2 p = refined.points[piece[0]], q = refined.points[piece[1]];
+          for (const auto& [a, b] : outline.segments) {
+            const glm::dvec2 start = outline.points.positions[a], end = outline.points.positions[b];
+            nearest =
+                std::min(nearest, std::max(distance_to(p, start, end), distance_to(q, start, end)));
+          }
+          EXPECT_LT(nearest, 1e-14);
+        }
+      }
+    }
+  }
+}
+
+TEST(Refine, EveryMethodReachesTheAngleWithAnyThreads) {
+  for (const RefinementMethod& method : refinement_methods()) {
+    for (const int threads : {1, 2, 3, 8}) {
+      const parallel::AllowThreads allowed(threads);
+      parallel::Arena arena(threads);
+      for (const char* kind : {"country", "star"}) {
+        SCOPED_TRACE(std::string(method.name) + ", " + std::to_string(threads) + " threads, " +
+                     kind);
+        const Outline outline = generate_outline(kind, 150, 6);
+        arena.execute([&] {
+          checked(outline, {.min_angle = 25,
+                            .max_area = 1e-4,
+                            .method = std::string(method.name),
+                            .threads = threads});
+        });
+      }
+      Outline points;
+      points.points = generate_points("cluster", 2000, 2, 3);
+      arena.execute(
+          [&] { checked(points, {.method = std::string(method.name), .threads = threads}); });
+    }
+  }
+}
+
+TEST(Refine, TheDomainHasTheAreaOfTheOutline) {
+  for (const char* kind : {"lake", "country"}) {
+    const Outline outline = generate_outline(kind, 400, 5);
+    double twice = 0;  // the domain is to the left of all segments
+    for (const auto& [a, b] : outline.segments) {
+      const glm::dvec3 &p = outline.points.positions[a], &q = outline.points.positions[b];
+      twice += p.x * q.y - p.y * q.x;
+    }
+    ASSERT_GT(twice, 0) << kind;
+    const Refined refined = checked(outline, {.min_angle = 20, .max_area = 1e-3});
+    EXPECT_NEAR(area_of(refined), twice / 2, 1e-12) << kind;
+  }
+}
+
+TEST(Refine, ReachesTheAngleOnHardPoints) {
+  std::uint64_t seed = 0;
+  for (const HardPoints& kind : hard_points()) {
+    Outline outline;
+    for (const glm::dvec2& p : kind.make(60, ++seed)) outline.points.positions.emplace_back(p, 0);
+    // Beyond what products of coordinates allow.
+    double largest = 0;
+    for (const glm::dvec3& p : outline.points.positions) {
+      largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    }
+    if (!(largest < 1e50 && (largest == 0 || largest > 1e-50))) continue;
+    SCOPED_TRACE(std::string(kind.name) + ", seed " + std::to_string(seed));
+    RefineOptions options{.min_angle = 20, .max_points = 1'000'000};
+    const Refined refined = refine(outline, options);
+    const Verdict verdict = verify_triangles(view(refined.points), refined.triangulation.vertices);
+    EXPECT_TRUE(verdict.valid && verdict.delaunay && verdict.canonical) << verdict.reason;
+    const Quality reached = quality(view(refined.points), domain_of(refined));
+    if (reached.simplices > 0 && refined.counts.too_fine + refined.counts.excepted == 0) {
+      EXPECT_GE(reached.min_angle, 20);
+    }
+  }
+}
+
+TEST(Refine, AnAngleOfZeroMakesSegmentsEdgesOnly) {
+  const Refined plain = checked(square(), {.min_angle = 0});
+  EXPECT_EQ(plain.points.size(), 4U);
+  EXPECT_EQ(plain.triangulation.size(), 2U);
+  // The long segment is no edge before points near it cut it.
+  Outline outline = polygon({{-4, -1}, {4, -1}, {4, 1}, {-4, 1}});
+  add_segment(outline, {-3, 0}, {3, 0});
+  outline.points.positions.emplace_back(0.25, 0.125, 0);
+  const Refined refined = checked(outline, {.min_angle = 0});
+  EXPECT_GT(refined.counts.on_segments, 0U);
+  EXPECT_EQ(refined.counts.inside, 0U);
+}
+
+TEST(Refine, SegmentsThatMeetWithoutAPointGetOne) {
+  Outline outline = square();
+  add_segment(outline, {0.125, 0.25}, {0.875, 0.75});
+  add_segment(outline, {0.125, 0.625}, {0.75, 0.25});
+  const Refined refined = checked(outline, {.min_angle = 20});
+  EXPECT_EQ(refined.counts.crossings, 1U);
+  const double length = length_of(outline.points.positions, outline.segments);
+  EXPECT_NEAR(length_of(refined.points, refined.segments), length, 1e-12);
+}
+
+TEST(Refine, SegmentsGoThroughPointsOnThemAndCountOnce) {
+  Outline outline = square();
+  outline.points.positions.emplace_back(0.25, 0, 0);           // on a side
+  outline.points.positions.emplace_back(0.5, 1 + 0x1p-52, 0);  // beside one, by rounding
+  outline.segments.push_back({0, 4});                          // a part of a side
+  outline.segments.push_back({1, 0});                          // a side again
+  outline.segments.push_back({2, 2});                          // nothing
+  const Refined refined = checked(outline, {.min_angle = 20});
+  EXPECT_NEAR(length_of(refined.points, refined.segments), 4, 1e-12);
+  EXPECT_LT(refined.points.size(), 40U);
+}
+
+TEST(Refine, SmallCornersAreListedAndExceptTheirTriangles) {
+  for (const double degrees : {40.0, 10.0, 1.0, 0.01}) {
+    const double radians = degrees * std::numbers::pi / 180;
+    const Outline outline =
+        polygon({{0, 0}, {1, 0}, {1.25 * std::cos(radians), 1.25 * std::sin(radians)}});
+    SCOPED_TRACE(degrees);
+    const RefineOptions options{.min_angle = 25, .max_points = 1'000'000};
+    const Refined refined = checked(outline, options);
+    bool is_listed = false;
+    for (const SmallCorner& corner : refined.small_corners) {
+      is_listed |= corner.row == 0 && std::abs(corner.degrees - degrees) < 1e-9;
+    }
+    EXPECT_TRUE(is_listed);
+    EXPECT_EQ(refined.counts.excepted > 0, degrees < 25);
+  }
+}
+
+TEST(Refine, HolesAreTakenOut) {
+  Outline outline = polygon({{0, 0}, {4, 0}, {4, 4}, {0, 4}});
+  const Outline hole = polygon({{1, 1}, {3, 1}, {3, 3}, {1, 3}});
+  for (const glm::dvec3& p : hole.points.positions) outline.points.positions.push_back(p);
+  for (const auto& [a, b] : hole.segments) outline.segments.push_back({a + 4, b + 4});
+  EXPECT_NEAR(area_of(checked(outline, {.min_angle = 25})), 16, 1e-12);
+  outline.holes = {{2, 2}, {9, 9}};  // the second is outside anyway
+  EXPECT_NEAR(area_of(checked(outline, {.min_angle = 25})), 12, 1e-12);
+}
+
+TEST(Refine, HeightsOfAddedPointsAreThoseOfTheGivenTriangulation) {
+  Outline outline = generate_outline("lake", 100, 3);
+  outline.points.has_z = true;
+  const auto height = [](const glm::dvec3& p) { return 3 * p.x - 2 * p.y + 7; };
+  for (glm::dvec3& p : outline.points.positions) p.z = height(p);
+  const Refined refined = refine(outline, {.min_angle = 25});
+  for (const glm::dvec3& p : refined.points) EXPECT_NEAR(p.z, height(p), 1e-9);
+}
+
+TEST(Refine, PointsOnALineHaveNoTriangles) {
+  Outline outline;
+  outline.points = generate_points("collinear", 50, 2, 1);
+  EXPECT_EQ(refine(outline, {}).triangulation.size(), 0U);
+  outline.points.positions.clear();
+  EXPECT_EQ(refine(outline, {}).points.size(), 0U);
+}
+
+TEST(Refine, ArgumentsThatCannotBe) {
+  EXPECT_THROW(refine(square(), {.min_angle = 31}), std::invalid_argument);
+  EXPECT_THROW(refine(square(), {.min_angle = -1}), std::invalid_argument);
+  EXPECT_THROW(refine(square(), {.max_area = -1}), std::invalid_argument);
+  EXPECT_THROW(refine(square(), {.method = "none"}), std::invalid_argument);
+  EXPECT_THROW(refine(square(), {.max_area = 1e-9, .max_points = 1000}), std::length_error);
+  Outline open = square();
+  open.segments.pop_back();
+  EXPECT_THROW(refine(open, {}), std::invalid_argument);
+  Outline beyond = square();
+  beyond.segments.push_back({0, 4});
+  EXPECT_THROW(refine(beyond, {}), std::invalid_argument);
+  Outline huge = square();
+  huge.points.positions[0].x = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(refine(huge, {}), std::invalid_argument);
+}
+
+TEST(Refine, EndsWhenAskedTo) {
+  parallel::Progress progress;
+  progress.request_stop();
+  EXPECT_THROW(refine(square(), {.max_area = 1e-5, .progress = &progress}), parallel::Interrupted);
+}
+
+}  // namespace
+}  // namespace delray::delaunay
