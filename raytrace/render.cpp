@@ -73,6 +73,29 @@ struct Traced {
   double busy = 0.0;  // seconds of processor time
 };
 
+// Rasterizes first hits, where that is asked for and pays.
+FirstHits::Made first_hits(const comm::Communicator& communicator, const Tracer* tracer,
+                           const RenderOptions& options, const FrameContext& context,
+                           const geometry::Rect& window, FirstHits::Trials& trials) {
+  if (options.primary == Primary::trace || tracer == nullptr) return {};
+  const scenes::View& view = context.view;
+  SeenWindow seen{view, window};
+  for (const float x : {0.0F, static_cast<float>(view.width)}) {
+    for (const float y : {0.0F, static_cast<float>(view.height)}) {
+      if (!view.orthographic)
+        seen.longest = std::max(seen.longest, 1.001F * glm::length(view.ray(x, y)));
+    }
+  }
+  seen.centred = options.samples == 1;
+  double part = 1.0;
+  if (const auto squares = options.part.squares; !squares.empty()) {
+    part = static_cast<double>(std::ranges::count(squares, std::uint8_t{1})) /
+           static_cast<double>(squares.size());
+  }
+  return FirstHits::make(*tracer, seen, part * samples_of(options) / communicator.size(),
+                         options.primary == Primary::raster_always, trials);
+}
+
 Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
              const loadbalance::ScheduleOptions& how) {
   parallel::Progress* const progress = frame.options.progress;
@@ -262,6 +285,7 @@ struct Renderer::Memory {
   const Distribution* distribution;
   TileShares shares = {};
   PlannedTiles planned = {};
+  FirstHits::Trials trials = {};
   image::ImageF last = {};  // given back
 
   image::ImageF picture(const geometry::Rect& window) {
@@ -314,11 +338,19 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
     result.image = memory_->picture(window);
     if (!options.part.squares.empty()) image::clear(result.image);
   }
-  const TiledFrame frame{
-      tracer, options, context, pool, {window, side, side}, gathers ? &result.image : nullptr};
+  const FirstHits::Made first =
+      first_hits(communicator, tracer, options, context, window, memory_->trials);
+  const TiledFrame frame{tracer,
+                         options,
+                         context,
+                         pool,
+                         {window, side, side},
+                         gathers ? &result.image : nullptr,
+                         first.hits.get()};
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
   Statistics& statistics = result.statistics;
+  statistics.why_traced = first.why_not;
 
   recording.mark(comm::Phase::redistribute, 0);
   loadbalance::ScheduleOptions how =

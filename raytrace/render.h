@@ -26,6 +26,11 @@ namespace delray::raytrace {
 // same whoever traced them, or the processor time that they took.
 enum class CostSource : std::uint8_t { rays, seconds };
 
+// Where the hits of camera rays come from: rays, or rasterization, which gives the same bytes:
+// samples of which that is not certain are traced. raster: all are traced where rasterizing is
+// expected to take longer. raster_always: nowhere, as tests want it.
+enum class Primary : std::uint8_t { trace, raster, raster_always };
+
 // The part of a picture that a call renders; all of it unless told otherwise.
 struct Part {
   geometry::Rect window;  // of the frame, its sides on multiples of kTaskSide or on the frame's;
@@ -48,6 +53,7 @@ struct RenderOptions {
   bool scattered = false;  // FrameContext::scattered
   std::string integrator = "whitted";
   Part part;
+  Primary primary = Primary::trace;  // over a scene that is shared out: traced
   // Of loadbalance::schedules(): tiles are handed out to ranks and threads.
   std::string schedule = "interlaced";
   bool master_works = true;  // whether ranks that hand out tiles trace some themselves
@@ -118,6 +124,7 @@ struct Statistics {
   std::optional<PartitionStatistics> partition;
   std::vector<RankStatistics> ranks;
   std::string embree_version, embree_isa;
+  std::string why_traced;  // with Primary::raster, if rank 0 rasterized nothing
 
   // Of several renderings by the same ranks: times and counts are summed, the rest is the last's.
   void operator+=(Statistics&& more);

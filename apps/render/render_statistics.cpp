@@ -94,6 +94,7 @@ Json raytrace_of(const raytrace::Statistics& s) {
   Json counts = {{"imbalance_rays", s.imbalance_rays},
                  {"structure_bytes", s.structure_bytes},
                  {"degenerate", s.degenerate}};
+  if (!s.why_traced.empty()) counts["why_traced"] = s.why_traced;
   if (s.partition) {
     counts["partition"] = {{"predicted_imbalance", s.partition->predicted},
                            {"measured", s.partition->measured},
@@ -107,7 +108,8 @@ Json of_rays(const raytrace::RayCounts& rays) {
   return {{"primary", rays.primary},
           {"shadow", rays.shadow},
           {"secondary", rays.secondary},
-          {"surplus", rays.surplus}};
+          {"surplus", rays.surplus},
+          {"rasterized", rays.rasterized}};
 }
 
 // Adds the counts that ranks of only one engine have.

@@ -80,11 +80,17 @@ void attenuate(const LocalScene& scene, const shading::BatchShader& shader,
   }
 }
 
-void intersect_rays(const LocalScene& scene, RayBatch& batch) {
+namespace {
+
+// Traces rays group by group, those of group g that active_of(g) says, and finds the points of all.
+template <class F>
+void find_hit_points(const LocalScene& scene, RayBatch& batch, F&& active_of) {
   const RayGroup* before = nullptr;
-  for (RayGroup& group : batch.rays) {
+  for (std::size_t g = 0; g < batch.rays.size(); ++g) {
+    RayGroup& group = batch.rays[g];
     if (group.misses) continue;
-    scene.embree.intersect(group.active, group.packet, group.coherent);
+    if (const ActiveRays* active = active_of(g))
+      scene.embree.intersect(*active, group.packet, group.coherent);
     if (!scene.large) continue;
     fetch_corners(scene.instances, group);
     if (before != nullptr) fetch_vertices(scene.instances, *before);
@@ -97,8 +103,23 @@ void intersect_rays(const LocalScene& scene, RayBatch& batch) {
   }
 }
 
+LocalScene whole_scene(const Tracer& tracer) {
+  return {tracer.embree, tracer.instances, tracer.shader, {}, tracer.large};
+}
+
+}  // namespace
+
+void intersect_rays(const LocalScene& scene, RayBatch& batch) {
+  find_hit_points(scene, batch, [&](std::size_t g) { return &batch.rays[g].active; });
+}
+
+void intersect_rest(const Tracer& tracer, RayBatch& batch, std::span<const ActiveRays> left) {
+  find_hit_points(whole_scene(tracer), batch,
+                  [&](std::size_t g) { return active_lanes(left[g]) != 0 ? &left[g] : nullptr; });
+}
+
 void intersect(const Tracer& tracer, const shading::BatchShader& shader, RayBatch& batch) {
-  const LocalScene scene{tracer.embree, tracer.instances, tracer.shader, {}, tracer.large};
+  const LocalScene scene = whole_scene(tracer);
   intersect_rays(scene, batch);
   for (ShadowGroup& group : batch.shadows) {
     SeeThrough passed[kPacketRays];

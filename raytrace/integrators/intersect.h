@@ -12,6 +12,10 @@ namespace delray::raytrace {
 // Intersects all rays of the batch, group by group as packets. `shader` is made of the tracer's.
 void intersect(const Tracer& tracer, const shading::BatchShader& shader, RayBatch& batch);
 
+// As above, of camera rays, of which some have their hits already: element i of `left` are those of
+// group i that have none.
+void intersect_rest(const Tracer& tracer, RayBatch& batch, std::span<const ActiveRays> left);
+
 // Geometry at hand, with Embree's structure over it.
 struct LocalScene {
   const EmbreeScene& embree;

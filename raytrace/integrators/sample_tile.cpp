@@ -198,9 +198,17 @@ TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
   const double start = thread_seconds();
   TilePixels pixels = start_tile(frame, tile);
   const int samples = samples_of(frame.options);
+  FirstHits::Memory memory;
   for (Task& task : tasks_of(frame, pixels.rect, frame.integrators.side())) {
     for (int s = 0; s < samples; ++s, ++task.first_sample) {
-      for (integrator.start(task); !integrator.done(); integrator.advance()) {
+      integrator.start(task);
+      if (frame.first_hits != nullptr && !integrator.done()) {
+        RayBatch& batch = integrator.batch();
+        pixels.rays.rasterized += frame.first_hits->find(task.pixels, batch.rays, memory);
+        intersect_rest(*frame.tracer, batch, memory.left);
+        integrator.advance();
+      }
+      for (; !integrator.done(); integrator.advance()) {
         intersect(*frame.tracer, frame.context.shader, integrator.batch());
       }
       add_samples(frame, integrator, task, pixels);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "loadbalance/task_grid.h"
+#include "raytrace/first_hits/first_hits.h"
 #include "raytrace/integrators/integrator_pool.h"
 #include "raytrace/render.h"
 
@@ -15,6 +16,7 @@ struct TiledFrame {
   loadbalance::Blocks tiles;  // tile k is task k of the schedule
   // Of the window, on rank 0, whose tiles go there; null elsewhere, and where there are displays.
   image::ImageF* picture;
+  const FirstHits* first_hits = nullptr;  // where the hits of camera rays are rasterized
 };
 
 }  // namespace delray::raytrace

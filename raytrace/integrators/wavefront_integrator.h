@@ -32,14 +32,16 @@ struct TraceOptions {
 };
 
 // Rays sent. A ray that goes on behind a see-through layer counts again. `surplus` of the primary
-// ones were sent because packets are never cut, through pixels that belong to another tile.
+// ones were sent because packets are never cut, through pixels that belong to another tile, and of
+// `rasterized` ones the hit was found by rasterization (Primary::raster).
 struct RayCounts {
-  std::uint64_t primary = 0, shadow = 0, secondary = 0, surplus = 0;
+  std::uint64_t primary = 0, shadow = 0, secondary = 0, surplus = 0, rasterized = 0;
   RayCounts& operator+=(const RayCounts& b) {
     primary += b.primary;
     shadow += b.shadow;
     secondary += b.secondary;
     surplus += b.surplus;
+    rasterized += b.rasterized;
     return *this;
   }
   bool operator==(const RayCounts&) const = default;
@@ -59,8 +61,6 @@ struct FrameContext {
   geometry::Rect filled = {0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
   std::span<const std::uint8_t> traced = {};  // Part::pixels
 };
-
-inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)
 
 // Pixels are walked through in squares of this side, cut from the frame's left upper corner on
 // however large tiles are: rays of so many stay in the cache between tracing and shading.

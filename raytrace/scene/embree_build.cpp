@@ -9,6 +9,17 @@
 #include "raytrace/scene/embree_objects.h"
 
 namespace delray::raytrace {
+
+void commit(RTCDevice device, RTCScene tree) {
+  // Joining keeps the work in the arena of the caller; Embree would use an arena of its own.
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED) != 0) {
+    rtcJoinCommitScene(tree);
+  } else {
+    rtcCommitScene(tree);
+  }
+  check(device, "building the acceleration structure");
+}
+
 namespace {
 
 RTCBuildQuality quality(BuildOptions::Quality quality) {
@@ -39,16 +50,6 @@ Tree new_tree(RTCDevice device, const BuildOptions& options, bool changing) {
   const int dynamic = changing ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE;
   rtcSetSceneFlags(tree.get(), static_cast<RTCSceneFlags>(robust | dynamic | kFilterOfQuery));
   return tree;
-}
-
-void commit(RTCDevice device, RTCScene tree) {
-  // Joining keeps the work in the arena of the caller; Embree would use an arena of its own.
-  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED) != 0) {
-    rtcJoinCommitScene(tree);
-  } else {
-    rtcCommitScene(tree);
-  }
-  check(device, "building the acceleration structure");
 }
 
 // Has the geometry look at the instance's vertices where they are, or at a copy.

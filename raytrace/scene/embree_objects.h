@@ -31,6 +31,9 @@ using Tree = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 // Throws what EmbreeScene throws if the device has failed.
 void check(RTCDevice device, const char* doing);
 
+// Builds the structure of a scene in the caller's arena. Throws as check.
+void commit(RTCDevice device, RTCScene tree);
+
 struct EmbreeDevice::State {
   std::atomic<std::int64_t> memory{0};
   Device device;

@@ -297,6 +297,8 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
   trace(*state_, active, packet, argument, rtcOccluded16, rtcOccluded8, rtcOccluded4);
 }
 
+bool EmbreeScene::is_robust() const { return state_->options.robust; }
+
 std::uint64_t EmbreeScene::memory() const { return state_->memory; }
 
 geometry::Box3 EmbreeScene::bounds() const {

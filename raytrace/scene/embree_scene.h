@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "geometry/box.h"
 #include "raytrace/scene/geometry_instance.h"
@@ -90,9 +91,17 @@ class EmbreeScene {
   void occluded(const ActiveRays& active, ShadowPacket& packet,
                 std::span<SeeThrough, kPacketRays> passed, bool coherent) const;
 
+  // The matrix by which Embree brings rays to the space of an instance of `instances`, the
+  // scene's: the inverse of `to_world` to the last bit as it is computed there. The unit matrix of
+  // those that are no Embree instances; not a number where the transform has no inverse.
+  // O(instances log instances). Throws as the constructor.
+  std::vector<glm::mat4x3> to_local(std::span<const GeometryInstance> instances) const;
+
   bool has_see_through() const { return has_see_through_; }
-  std::uint64_t memory() const;   // bytes that Embree took for this scene
-  geometry::Box3 bounds() const;  // of all that can be hit
+  bool has_splats() const { return has_splats_; }  // points or segments beside triangles
+  bool is_robust() const;                          // BuildOptions::robust
+  std::uint64_t memory() const;                    // bytes that Embree took for this scene
+  geometry::Box3 bounds() const;                   // of all that can be hit
   const EmbreeDevice& device() const;
 
   struct State;  // Embree's objects

@@ -29,6 +29,7 @@ struct alignas(16) Ray {
 };
 
 inline constexpr int kPacketRays = 16;
+inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)
 
 // Sixteen rays of a block of 4 x 4 pixels; element i is ray i.
 struct alignas(64) RayPacket {

@@ -95,6 +95,10 @@ std::string why_no_assignment(const RenderRequest& r) {
   const bool is_dealt = data.division == raytrace::ShareOptions::Division::voxels;
   return data.replicated || is_dealt ? "--data " + r.data : "";
 }
+std::string why_no_primary(const RenderRequest& r) {
+  if (!raytrace::find_distribution(r.data)->replicated) return "--data " + r.data;
+  return r.sampling.aperture > 0.0 ? "--aperture, whose rays start all over the lens" : "";
+}
 std::string why_no_cache(const RenderRequest& r) {
   return raytrace::find_distribution(r.data)->fetches ? "" : "--data " + r.data;
 }
@@ -403,6 +407,14 @@ std::vector<RenderOption> raytracer_options() {
             return r.raytrace.trace.shadows ? "not given" : "given";
           })
           .reported("shadows", is_raytrace),
+      RenderOption::choice<raytrace::Primary>(
+          "--primary", [](auto& r) -> auto& { return r.raytrace.primary; },
+          {{"trace", raytrace::Primary::trace}, {"raster", raytrace::Primary::raster}},
+          group::kRaytracer,
+          "Where the first hits of camera rays come from: trace, by rays (default), or raster, "
+          "rasterized but for silhouettes, where that is faster: the same picture")
+          .unless(unless_raytrace(why_no_primary))
+          .reported("primary", is_raytrace),
       RenderOption::choice<Quality>(
           "--build", [](auto& r) -> auto& { return r.raytrace.build.quality; },
           {{"low", Quality::low}, {"medium", Quality::medium}, {"high", Quality::high}},

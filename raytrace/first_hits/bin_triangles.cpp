@@ -1,0 +1,82 @@
+// Sorts triangles into the squares of the picture that they may be seen in, by counting. Threads
+// share out rows of squares, so that nobody waits for anybody.
+#include <algorithm>
+#include <limits>
+
+#include "parallel/arena.h"
+#include "parallel/parallel_for.h"
+#include "raytrace/first_hits/triangle_bins.h"
+
+namespace delray::raytrace {
+namespace {
+
+// Calls f(square, blocks of it that the triangle may be seen in) for all squares with any in rows
+// [first, last).
+template <class F>
+void for_each_square(const SeenTriangle& seen, int columns, int first, int last, F&& f) {
+  const auto within = [](int bin, int begin, int end) {
+    return std::min(end, (bin + 1) * kBinBlocks) - std::max(begin, bin * kBinBlocks);
+  };
+  const int y0 = std::max(first, seen.y0 / kBinBlocks);
+  const int y1 = std::min(last, (seen.y1 + kBinBlocks - 1) / kBinBlocks);
+  const int x0 = seen.x0 / kBinBlocks, x1 = (seen.x1 + kBinBlocks - 1) / kBinBlocks;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      f(static_cast<std::size_t>(y * columns + x),
+        static_cast<std::uint32_t>(within(x, seen.x0, seen.x1) * within(y, seen.y0, seen.y1)));
+    }
+  }
+}
+
+float nearest_of(std::span<const SeenTriangle> seen) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const SeenTriangle& t : seen) nearest = std::min(nearest, t.nearest);
+  return nearest;
+}
+
+}  // namespace
+
+TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
+                           const geometry::Rect& window) {
+  std::vector<std::pair<float, std::span<const SeenTriangle>>> lists;
+  for (const std::vector<SeenTriangle>& list : seen) {
+    if (!list.empty()) lists.emplace_back(nearest_of(list), list);
+  }
+  std::ranges::stable_sort(lists, {}, [](const auto& list) { return list.first; });
+  TriangleBins bins;
+  bins.columns = (window.width() + kBinSide - 1) / kBinSide;
+  bins.rows = (window.height() + kBinSide - 1) / kBinSide;
+  const auto squares = static_cast<std::size_t>(bins.columns) * static_cast<std::size_t>(bins.rows);
+  bins.first.assign(squares + 1, 0);
+  bins.blocks.assign(squares, 0);
+  const auto stripes = static_cast<std::size_t>(std::min(bins.rows, parallel::arena_threads()));
+  const auto walk = [&](auto&& f) {
+    parallel::parallel_for(0, stripes, 1, [&](std::size_t s) {
+      const auto row = [&](std::size_t stripe) {
+        return static_cast<int>(stripe * static_cast<std::size_t>(bins.rows) / stripes);
+      };
+      const int first = row(s), last = row(s + 1);
+      for (const auto& [nearest, list] : lists) {
+        for (const SeenTriangle& triangle : list) {
+          for_each_square(
+              triangle, bins.columns, first, last,
+              [&](std::size_t square, std::uint32_t blocks) { f(triangle, square, blocks); });
+        }
+      }
+    });
+  };
+  walk([&](const SeenTriangle&, std::size_t square, std::uint32_t blocks) {
+    ++bins.first[square];
+    bins.blocks[square] += blocks;
+  });
+  std::uint32_t sum = 0;
+  for (std::uint32_t& first : bins.first) sum += std::exchange(first, sum);
+  bins.triangles.resize(sum);
+  std::vector<std::uint32_t> next = bins.first;
+  walk([&](const SeenTriangle& triangle, std::size_t square, std::uint32_t) {
+    bins.triangles[next[square]++] = triangle;
+  });
+  return bins;
+}
+
+}  // namespace delray::raytrace

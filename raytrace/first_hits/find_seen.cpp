@@ -1,0 +1,227 @@
+// Finds where on the picture rays may hit triangles, for certain: nothing that Embree's arithmetic
+// lets pass is left out, however rays and triangles are rounded.
+//
+// On the screen a ray passes the three edge functions only where no barycentric coordinate is below
+// -b, b the largest error of an edge function over the doubled area (triangle_lanes.h), times the
+// depths that perspective divides by: b = kNoise |D| e v z / |T|. For b <= 1/4 that is the triangle
+// scaled about its centre by 1 + 3b, at most 2bl beyond its box, l its longest side. For larger b
+// (slivers, triangles seen from the side) both signs have to be thought of: no coordinate is beyond
+// 1 + 2b, which is (2 + 4b)l.
+//
+// A triangle whose corners all lie outside of one plane of the window's frustum, by the part m of
+// the farthest corner's distance, is met by no ray if b(3/m + 6) < 1, b without |D| and with v for
+// z: D = sum U_k v_k / T, of which the outer part is negative, so that the edge functions U_k of a
+// passing ray sum up to 3/m errors at most, and D would be shorter than itself. Triangles that may
+// be hit far beyond their boxes are hit along a line (seen_strip.cpp). Triangles without a normal
+// are never hit, as the denominator of their depth is 0.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "raytrace/first_hits/seen_strip.h"
+#include "raytrace/first_hits/triangle_bins.h"
+#include "raytrace/scene/flush_to_zero.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/first_hits/find_seen.cpp"
+#include <hwy/foreach_target.h>
+// Highway's own header comes after it.
+#include <hwy/highway.h>
+
+#include "raytrace/first_hits/triangle_lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raytrace {
+namespace HWY_NAMESPACE {
+
+HWY_INLINE void put_box(F v, shading::Floats16& to, int i) {
+  hn::Store(v, FloatTag(), to.lane + i);
+}
+
+// Which of the lanes are hit by no ray, as all their corners lie beyond one plane.
+HWY_INLINE M lies_outside(const TriangleLanes& t, const SeenFrom& from) {
+  F most = set(-1.0F);
+  for (const glm::vec3& plane : from.planes) {
+    const F3 out = set(plane);
+    const F beyond =
+        hn::Min(dot(t.corner[0], out), hn::Min(dot(t.corner[1], out), dot(t.corner[2], out)));
+    most = hn::Max(most, beyond);
+  }
+  // 1 / 1024: the sides' own rounding.
+  const float off = 0x1p-10F + 4.0F * from.space.off_angle;
+  const F part = (most - set(4.0F * from.space.off_length)) / t.farthest - set(off);
+  const F noise = set(kNoise) * t.longest * t.farthest * t.farthest;
+  const M sure =
+      hn::Lt(noise * (set(3.0F) + set(6.0F) * part), set(0.5F) * part * hn::Abs(t.depth));
+  return hn::And(hn::Gt(part, set(0.0F)), sure);
+}
+
+// Boxes of pixels.
+struct Boxes {
+  shading::Floats16 x0, y0, x1, y1, nearest;
+};
+// Returns the lanes that cannot be hit outside.
+HWY_INLINE shading::LaneMask find_boxes(const TriangleLanes& t, const SeenFrom& from, int i,
+                                        Boxes& boxes) {
+  const RaySpace& space = from.space;
+  const F scale = set(from.scale), zero = set(0.0F);
+  F low_x = set(1e30F), high_x = set(-1e30F), low_y = low_x, high_y = high_x;
+  F deepest = zero, steepest = zero, nearest = set(1e30F), depth = set(1e30F);
+  M before = hn::Eq(zero, zero);
+  for (const F3& corner : t.corner) {
+    const F z = dot(corner, set(space.forward));
+    const F square = dot(corner, corner) * set(space.forward_length * space.forward_length);
+    before = hn::And(before, hn::And(hn::Gt(z, zero), hn::Ge(z * z, square * set(0x1p-20F))));
+    const F over = set(1.0F) / z;
+    const F x = set(from.half_width) + dot(corner, set(space.right)) * over * scale;
+    const F y = set(from.half_height) - dot(corner, set(space.up)) * over * scale;
+    low_x = hn::Min(low_x, x), high_x = hn::Max(high_x, x);
+    low_y = hn::Min(low_y, y), high_y = hn::Max(high_y, y);
+    deepest = hn::Max(deepest, z);
+    depth = hn::Min(depth, z);
+    steepest = hn::Max(steepest, square * over * over);
+    nearest = hn::Min(nearest, dot(corner, corner));
+  }
+  const F noise = set(kNoise * space.longest) * t.longest * t.farthest * deepest / hn::Abs(t.depth);
+  const F side = (high_x - low_x) + (high_y - low_y);
+  const F two = set(2.0F), four = set(4.0F);
+  const F grown = hn::IfThenElse(hn::Le(noise, set(0.25F)), two * noise, four * noise + two) * side;
+  const F off = set(space.off_angle) + set(space.off_length) / hn::Sqrt(nearest);
+  const F margin = grown + set(from.margin) + scale * steepest * (set(0x1p-20F) + four * off);
+  // Written so that what is not a number fails.
+  const M known = hn::And(before, hn::Le(margin, set(kWidest)));
+  // Between corners 1 / t is a plane, and beyond them as far as its barycentric coordinates go.
+  const M bounded =
+      hn::And(hn::And(known, is_firm(t, space, deepest)), hn::Le(noise, set(0x1p-4F)));
+  put_box(hn::IfThenElseZero(bounded, depth * (set(0.999F) - four * noise)), boxes.nearest, i);
+  put_box(hn::Ceil(low_x - margin - set(from.first)), boxes.x0, i);
+  put_box(hn::Ceil(low_y - margin - set(from.first)), boxes.y0, i);
+  put_box(hn::Floor(high_x + margin + set(from.last)), boxes.x1, i);
+  put_box(hn::Floor(high_y + margin + set(from.last)), boxes.y1, i);
+  return bits_of(known, i);
+}
+
+// Lanes that can be hit at all, and those of them that may be hit outside of their boxes.
+struct SeenLanes {
+  shading::LaneMask seen = 0, beyond = 0;
+};
+SeenLanes find_boxes_of(const CornerLanes& corners, const SeenFrom& from, Boxes& boxes) {
+  SeenLanes result;
+  for (int i = 0; i < kPacketRays; i += lanes()) {
+    F3 position[3];
+    load_corners(corners, i, position);
+    const TriangleLanes t = triangles_of(position, from.space.origin);
+    const F sum = hn::Abs(t.normal.x) + hn::Abs(t.normal.y) + hn::Abs(t.normal.z);
+    const M flat = hn::Eq(sum, set(0.0F));
+    const M out = hn::Or(flat, lies_outside(t, from));
+    const shading::LaneMask seen = bits_of(hn::Not(out), i);
+    result.seen |= seen;
+    result.beyond |= seen & ~find_boxes(t, from, i, boxes);
+  }
+  return result;
+}
+
+std::array<glm::vec3, 3> corners_of(const CornerLanes& corners, int k) {
+  std::array<glm::vec3, 3> result;
+  for (int c = 0; c < 3; ++c) {
+    result[c] = {corners.value[3 * c][k], corners.value[3 * c + 1][k], corners.value[3 * c + 2][k]};
+  }
+  return result;
+}
+
+void find_seen_of(const GeometryInstance& instance, std::uint32_t number, const SeenFrom& from,
+                  std::uint32_t first, std::uint32_t last, std::vector<SeenTriangle>& seen) {
+  const FlushToZero flush;
+  CornerLanes corners;
+  for (int k = 0; k < kPacketRays; ++k) clear_corners(k, corners);
+  Boxes boxes;
+  const geometry::Rect& window = from.window;
+  for (std::uint32_t begin = first; begin < last; begin += kPacketRays) {
+    const std::uint32_t count = std::min<std::uint32_t>(kPacketRays, last - begin);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      set_corners(instance.positions, instance.mesh->triangles[begin + k], static_cast<int>(k),
+                  corners);
+    }
+    const SeenLanes found = find_boxes_of(corners, from, boxes);
+    for (shading::LaneMask rest = found.seen & ((1U << count) - 1U); rest != 0; rest &= rest - 1) {
+      const int k = std::countr_zero(rest);
+      SeenTriangle triangle{number, begin + static_cast<std::uint32_t>(k)};
+      if ((found.beyond >> k & 1) != 0) {
+        find_strip(corners_of(corners, k), from, triangle, seen);
+        continue;
+      }
+      const float x0 = std::max(boxes.x0[k], from.x0), x1 = std::min(boxes.x1[k], from.x1);
+      const float y0 = std::max(boxes.y0[k], from.y0), y1 = std::min(boxes.y1[k], from.y1);
+      if (!(x0 <= x1 && y0 <= y1)) continue;
+      const auto block = [](float at, int origin) {
+        return static_cast<std::uint16_t>((static_cast<int>(at) - origin) / kBlockSide);
+      };
+      triangle.nearest = boxes.nearest[k];
+      triangle.x0 = block(x0, window.x0), triangle.y0 = block(y0, window.y0);
+      triangle.x1 = static_cast<std::uint16_t>(block(x1, window.x0) + 1);
+      triangle.y1 = static_cast<std::uint16_t>(block(y1, window.y0) + 1);
+      seen.push_back(triangle);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raytrace
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raytrace {
+
+HWY_EXPORT(find_seen_of);
+
+namespace {
+
+// Pixels by which a ray may pass beside its place: a component of its direction may be moved off 0
+// by a millionth of its length (primary_rays.h).
+float ray_margin(const SeenWindow& window) {
+  return 0.02F + 4e-6F * window.view.scale * window.longest * window.longest;
+}
+
+SeenFrom seen_from(const RaySpace& space, const SeenWindow& window) {
+  const scenes::View& view = window.view;
+  const geometry::Rect& pixels = window.pixels;
+  SeenFrom from{space,
+                {},
+                view.scale,
+                view.half_width,
+                view.half_height,
+                ray_margin(window),
+                window.centred ? 0.5F : 1.0F,
+                window.centred ? -0.5F : 0.0F,
+                static_cast<float>(pixels.x0),
+                static_cast<float>(pixels.y0),
+                static_cast<float>(pixels.x1 - 1),
+                static_cast<float>(pixels.y1 - 1),
+                pixels};
+  const auto place_x = [&](int x) {
+    return (static_cast<float>(x) - view.half_width) / view.scale;
+  };
+  const auto place_y = [&](int y) {
+    return (static_cast<float>(y) - view.half_height) / view.scale;
+  };
+  const auto plane = [](const glm::vec3& v) { return v * (1.0F / glm::length(v)); };
+  from.planes[0] = plane(space.forward * place_x(pixels.x0 - 1) - space.right);
+  from.planes[1] = plane(space.right - space.forward * place_x(pixels.x1 + 1));
+  from.planes[2] = plane(space.forward * place_y(pixels.y0 - 1) + space.up);
+  from.planes[3] = plane(-space.up - space.forward * place_y(pixels.y1 + 1));
+  from.planes[4] = plane(-space.forward);
+  return from;
+}
+
+}  // namespace
+
+void find_seen(const GeometryInstance& instance, std::uint32_t number, const RaySpace& space,
+               const SeenWindow& window, std::uint32_t first, std::uint32_t last,
+               std::vector<SeenTriangle>& seen) {
+  HWY_DYNAMIC_DISPATCH(find_seen_of)
+  (instance, number, seen_from(space, window), first, last, seen);
+}
+
+}  // namespace delray::raytrace
+#endif

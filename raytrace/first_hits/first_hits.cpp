@@ -1,0 +1,325 @@
+// Rasterizes the squares of a picture, each when its rays are due, from triangles that were sorted
+// beforehand; decides whether that pays.
+//
+// Times. Tracing is timed with some packets of the frame itself, and drawing is counted: triangles,
+// set-ups and blocks, each for the nanoseconds that it takes next to a packet (kDraw...). Where
+// there are many triangles a part of them is looked at first, so that a scene that does not pay
+// costs next to nothing.
+#include "raytrace/first_hits/first_hits.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "parallel/arena.h"
+#include "parallel/parallel_for.h"
+#include "raytrace/first_hits/draw_triangles.h"
+#include "raytrace/scene/flush_to_zero.h"
+#include "scenes/camera.h"
+
+namespace delray::raytrace {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kTrianglesPerPart = 1024;
+
+// Seconds of a core: to look at a triangle, to set it up in a square, to test a block. Measured on
+// a core with vectors of sixteen floats.
+constexpr double kLookSeconds = 16e-9, kSetUpSeconds = 50e-9, kTestSeconds = 18e-9;
+// And for each packet, whatever is drawn.
+constexpr double kPacketSeconds = 20e-9;
+// Rasterizing has to be expected to be so much faster.
+constexpr double kGain = 0.8;
+
+// Triangles first .. last - 1 of an instance.
+struct MeshPart {
+  std::uint32_t instance, first, last;
+};
+
+std::vector<MeshPart> mesh_parts(std::span<const GeometryInstance> instances) {
+  std::vector<MeshPart> parts;
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    if (instances[i].mesh == nullptr) continue;
+    const auto triangles = static_cast<std::uint32_t>(instances[i].mesh->triangles.size());
+    for (std::uint32_t first = 0; first < triangles; first += kTrianglesPerPart)
+      parts.push_back({i, first, std::min(triangles, first + kTrianglesPerPart)});
+  }
+  return parts;
+}
+
+// A packet of rays to triangles all over the scene.
+RayGroup rays_to_triangles(std::span<const GeometryInstance> instances,
+                           std::span<const MeshPart> parts, const scenes::View& view,
+                           std::uint32_t number) {
+  RayGroup group;
+  RayPacket& packet = group.packet;
+  for (int i = 0; i < kPacketRays; ++i) {
+    // Steps by the golden ratio reach all parts, and within them all triangles, evenly.
+    const std::uint32_t k = number * kPacketRays + static_cast<std::uint32_t>(i);
+    const auto share = [&](double times, std::uint32_t of) {
+      const double x = (k + 0.5) * times;
+      return std::min(of - 1, static_cast<std::uint32_t>((x - std::floor(x)) * of));
+    };
+    const MeshPart& part =
+        parts[share(0.61803398874989485, static_cast<std::uint32_t>(parts.size()))];
+    const GeometryInstance& instance = instances[part.instance];
+    const glm::uvec3 corners =
+        instance.mesh->triangles[part.first + share(0.75487766624669276, part.last - part.first)];
+    glm::vec3 to(0.0F);
+    for (int c = 0; c < 3; ++c) to += instance.positions[corners[c]] * (1.0F / 3);
+    if (instance.instanced) to = instance.to_world * glm::vec4(to, 1.0F);
+    const glm::vec3 direction = to - view.eye;
+    group.active.ray[i] = -1;
+    packet.origin_x[i] = view.eye.x, packet.origin_y[i] = view.eye.y;
+    packet.origin_z[i] = view.eye.z;
+    packet.direction_x[i] = direction.x, packet.direction_y[i] = direction.y;
+    packet.direction_z[i] = direction.z;
+    packet.near[i] = packet.time[i] = 0.0F;
+    packet.far[i] = std::numeric_limits<float>::infinity();
+    packet.mask[i] = 0xFFFFFFFFU;
+    packet.id[i] = packet.flags[i] = 0;
+    packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
+  }
+  return group;
+}
+
+// Whether what is drawn here is what Embree finds: its version, its instruction set and its
+// matrices of instances. Expressions that differ in a rounding give other bits for a large part of
+// all rays.
+bool finds_same_hits(const Tracer& tracer, std::span<const RaySpace> spaces,
+                     std::span<const std::uint32_t> space_of, std::span<const MeshPart> parts,
+                     const scenes::View& view) {
+  constexpr std::uint32_t kMostPackets = 32;
+  constexpr int kLeastHits = 16, kEnoughHits = 64;
+  int hits = 0;
+  for (std::uint32_t n = 0; n < kMostPackets && hits < kEnoughHits; ++n) {
+    const RayGroup asked = rays_to_triangles(tracer.instances, parts, view, n);
+    RayGroup traced = asked;
+    tracer.embree.intersect(traced.active, traced.packet, n % 2 == 0);
+    for (int i = 0; i < kPacketRays; ++i) {
+      if (traced.packet.triangle[i] == kMiss) continue;
+      const Hit found = hit_of(traced.packet, i);
+      RayGroup drawn = asked;
+      DrawnBlock block;
+      clear_drawn(drawn, block);
+      const SeenTriangle triangle{found.instance, found.triangle, 0.0F, 0, 0, 1, 1};
+      const RaySpace& space = spaces[space_of[found.instance]];
+      draw_triangles(tracer.instances, space, {&triangle, 1}, {0, 0, 1, 1, {&block, 1}});
+      if ((block.unsure >> i & 1) != 0) continue;  // nothing would be concluded from it
+      if (drawn.packet.triangle[i] == kMiss) return false;
+      const Hit hit = hit_of(drawn.packet, i);
+      if (hit.distance != found.distance || hit.u != found.u || hit.v != found.v ||
+          hit.instance != found.instance)
+        return false;
+      ++hits;
+    }
+  }
+  return hits >= kLeastHits;
+}
+
+// Packets of the window that may hit anything.
+double traced_packets(const Tracer& tracer, const SeenWindow& window) {
+  const geometry::Rect filled =
+      geometry::intersection(window.pixels, scenes::pixels_of(window.view, tracer.embree.bounds()));
+  return static_cast<double>(filled.area()) / kPacketRays;
+}
+
+// What it takes to trace a packet of the window, with what it needs in the caches.
+double traced_seconds(const Tracer& tracer, const SeenWindow& window) {
+  constexpr int kColumns = 8, kRows = 6;
+  const geometry::Rect at =
+      geometry::intersection(window.pixels, scenes::pixels_of(window.view, tracer.embree.bounds()));
+  if (at.empty()) return 0.0;
+  double best = std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < 2; ++turn) {
+    double seconds = 0.0;
+    for (int k = 0; k < kColumns * kRows; ++k) {
+      const int left = at.x0 + (2 * (k % kColumns) + 1) * at.width() / (2 * kColumns);
+      const int top = at.y0 + (2 * (k / kColumns) + 1) * at.height() / (2 * kRows);
+      RayGroup group;
+      RayPacket& packet = group.packet;
+      for (int i = 0; i < kPacketRays; ++i) {
+        const glm::vec3 direction =
+            window.view.ray(static_cast<float>(left + i % kBlockSide) + 0.5F,
+                            static_cast<float>(top + i / kBlockSide) + 0.5F);
+        group.active.ray[i] = -1;
+        packet.origin_x[i] = window.view.eye.x, packet.origin_y[i] = window.view.eye.y;
+        packet.origin_z[i] = window.view.eye.z;
+        packet.direction_x[i] = direction.x, packet.direction_y[i] = direction.y;
+        packet.direction_z[i] = direction.z;
+        packet.near[i] = window.view.near;
+        packet.time[i] = 0.0F;
+        packet.far[i] = std::numeric_limits<float>::infinity();
+        packet.mask[i] = 0xFFFFFFFFU;
+        packet.id[i] = packet.flags[i] = 0;
+        packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
+      }
+      const Clock::time_point start = Clock::now();
+      tracer.embree.intersect(group.active, packet, true);
+      seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    }
+    best = std::min(best, seconds / (kColumns * kRows));
+  }
+  return best;
+}
+
+// Seconds of a core that it takes to look at parts and to draw what is seen of them.
+double drawn_seconds(std::span<const std::vector<SeenTriangle>> seen,
+                     std::span<const MeshPart> parts, double passes) {
+  double looked = 0, squares = 0, blocks = 0;
+  for (const MeshPart& part : parts) looked += part.last - part.first;
+  for (const std::vector<SeenTriangle>& some : seen) {
+    for (const SeenTriangle& t : some) {
+      squares += (1 + (t.x1 - 1) / kBinBlocks - t.x0 / kBinBlocks) *
+                 (1 + (t.y1 - 1) / kBinBlocks - t.y0 / kBinBlocks);
+      blocks += t.blocks();
+    }
+  }
+  return kLookSeconds * looked + passes * (kSetUpSeconds * squares + kTestSeconds * blocks);
+}
+
+std::vector<std::vector<SeenTriangle>> find_all(const Tracer& tracer, const SeenWindow& window,
+                                                std::span<const RaySpace> spaces,
+                                                std::span<const std::uint32_t> space_of,
+                                                std::span<const MeshPart> parts) {
+  std::vector<std::vector<SeenTriangle>> seen(parts.size());
+  parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) {
+    const MeshPart& part = parts[i];
+    find_seen(tracer.instances[part.instance], part.instance, spaces[space_of[part.instance]],
+              window, part.first, part.last, seen[i]);
+  });
+  return seen;
+}
+
+std::string why_unknown(const Tracer& tracer, const scenes::View& view) {
+  if (view.orthographic) return "rays are parallel";
+  if (view.lens_radius > 0.0F) return "rays start on a lens";
+  if (tracer.embree.has_splats()) return "there are points or segments";
+  if (!tracer.embree.is_robust()) return "intersections are not robust";
+  return "";
+}
+
+}  // namespace
+
+FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, double passes,
+                                bool always, Trials& trials) {
+  constexpr const char* kAsFast = "tracing is expected to be as fast";
+  const FlushToZero flush;
+  if (!always && trials.rest > 0) {
+    --trials.rest;
+    return {nullptr, kAsFast};
+  }
+  if (std::string why = why_unknown(tracer, window.view); !why.empty()) return {nullptr, why};
+  const std::vector<MeshPart> parts = mesh_parts(tracer.instances);
+  if (parts.empty() || window.pixels.empty()) return {nullptr, "there is nothing to draw"};
+  std::unique_ptr<FirstHits> made(new FirstHits());
+  made->instances_ = tracer.instances;
+  made->window_ = window.pixels;
+  made->spaces_ = ray_spaces(tracer.instances, tracer.embree.to_local(tracer.instances),
+                             window.view, window.longest, made->space_of_);
+  for (const RaySpace& space : made->spaces_) {
+    if (!(space.forward_length > 0.0F)) return {nullptr, "an instance has no inverse transform"};
+  }
+  if (!trials.same) {
+    trials.same = finds_same_hits(tracer, made->spaces_, made->space_of_, parts, window.view);
+  }
+  if (!*trials.same)
+    return {nullptr, "Embree's arithmetic is not the one that is known, or nothing is hit"};
+
+  const double packets = traced_packets(tracer, window) * passes;
+  made->packet_seconds_ =
+      always ? std::numeric_limits<double>::infinity() : traced_seconds(tracer, window);
+  const double traced = packets * made->packet_seconds_;
+  constexpr int kFramesToRest = 15;
+  const auto rest = [&]() -> Made {
+    trials.rest = kFramesToRest;
+    return {nullptr, kAsFast};
+  };
+  const auto find = [&](std::span<const MeshPart> some) {
+    return find_all(tracer, window, made->spaces_, made->space_of_, some);
+  };
+  // Some parts first, about as many of a small scene as of a large one.
+  constexpr std::size_t kSome = 8, kLeastStep = 4, kMostStep = 64;
+  const std::size_t step = std::clamp(parts.size() / kSome, kLeastStep, kMostStep);
+  if (parts.size() > kSome && !always) {
+    std::vector<MeshPart> some;
+    for (std::size_t i = step / 2; i < parts.size(); i += step) some.push_back(parts[i]);
+    const double of_all = static_cast<double>(parts.size()) / static_cast<double>(some.size());
+    if (!(of_all * drawn_seconds(find(some), some, passes) + kPacketSeconds * packets <
+          kGain * traced))
+      return rest();
+  }
+  std::vector<std::vector<SeenTriangle>> seen = find(parts);
+  if (!always && !(drawn_seconds(seen, parts, passes) + kPacketSeconds * packets < traced))
+    return rest();
+  made->bins_ = bin_triangles(std::move(seen), window.pixels);
+  return {std::move(made), ""};
+}
+
+std::uint64_t FirstHits::find(const geometry::Rect& pixels, Groups<RayGroup>& groups,
+                              Memory& memory) const {
+  const int left = (pixels.x0 - window_.x0) / kBlockSide;
+  const int top = (pixels.y0 - window_.y0) / kBlockSide;
+  DrawnBlocks blocks{left,
+                     top,
+                     (pixels.width() + kBlockSide - 1) / kBlockSide,
+                     (pixels.height() + kBlockSide - 1) / kBlockSide,
+                     {}};
+  const int right = left + blocks.columns, bottom = top + blocks.rows;
+  memory.left.resize(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) memory.left[g] = groups[g].active;
+  const auto for_each_bin = [&](auto&& f) {
+    for (int y = top / kBinBlocks; y * kBinBlocks < bottom; ++y) {
+      for (int x = left / kBinBlocks; x * kBinBlocks < right; ++x) f(x, y);
+    }
+  };
+  double seconds = kPacketSeconds * static_cast<double>(groups.size());
+  for_each_bin([&](int x, int y) {
+    const auto square = static_cast<std::size_t>(y * bins_.columns + x);
+    seconds += kSetUpSeconds * static_cast<double>(bins_.of(x, y).size()) +
+               kTestSeconds * bins_.blocks[square];
+  });
+  if (seconds > packet_seconds_ * static_cast<double>(groups.size())) return 0;
+
+  memory.blocks.resize(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) clear_drawn(groups[g], memory.blocks[g]);
+  blocks.blocks = memory.blocks;
+  std::vector<SeenTriangle>& some = memory.triangles;
+  for_each_bin([&](int x, int y) {
+    // Other squares draw the rest of their triangles.
+    const int x0 = std::max(x * kBinBlocks, left), x1 = std::min((x + 1) * kBinBlocks, right);
+    const int y0 = std::max(y * kBinBlocks, top), y1 = std::min((y + 1) * kBinBlocks, bottom);
+    std::uint32_t space = 0;
+    const auto draw = [&] {
+      if (!some.empty()) draw_triangles(instances_, spaces_[space], some, blocks);
+      some.clear();
+    };
+    some.clear();
+    for (SeenTriangle triangle : bins_.of(x, y)) {
+      triangle.x0 = static_cast<std::uint16_t>(std::max<int>(triangle.x0, x0));
+      triangle.y0 = static_cast<std::uint16_t>(std::max<int>(triangle.y0, y0));
+      triangle.x1 = static_cast<std::uint16_t>(std::min<int>(triangle.x1, x1));
+      triangle.y1 = static_cast<std::uint16_t>(std::min<int>(triangle.y1, y1));
+      if (triangle.x0 >= triangle.x1 || triangle.y0 >= triangle.y1) continue;
+      if (const std::uint32_t its = space_of_[triangle.instance]; its != space) {
+        draw();
+        space = its;
+      }
+      some.push_back(triangle);
+      if (some.size() == kPacketRays) draw();
+    }
+    draw();
+  });
+  std::uint64_t certain = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].misses || !keep_certain_hits(memory.blocks[g])) continue;
+    certain += static_cast<std::uint64_t>(std::popcount(active_lanes(memory.left[g])));
+    memory.left[g] = {};
+  }
+  return certain;
+}
+
+}  // namespace delray::raytrace
