@@ -13,6 +13,10 @@ namespace delray::icet {
 // table of functions, make_program_communicator. Collective, and so is the destruction.
 std::unique_ptr<comm::Communicator> make_ranks(IceTCommunicator given);
 
+// Destroys what make_ranks made; where MPI is finalised already it is too late, and nothing is
+// done.
+void end_ranks(std::unique_ptr<comm::Communicator> ranks);
+
 // Ranks that talk by the functions of a table that a program has filled: Duplicate, Destroy, Isend,
 // Recv, Wait, Comm_rank and Comm_size are called. Each message is two of the table's: its tag and
 // size, then its bytes. Receives name their source and tag, as those of compositing schemes and

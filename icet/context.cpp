@@ -85,6 +85,8 @@ IceTContext icetCreateContext(IceTCommunicator communicator) {
 void icetDestroyContext(IceTContext context) {
   IceTContext expected = context;
   delray::icet::current_context().compare_exchange_strong(expected, nullptr);
+  if (context == nullptr) return;
+  delray::icet::guarded([&] { delray::icet::end_ranks(std::move(context->ranks)); });
   delete context;
 }
 

@@ -158,7 +158,8 @@ class TileDrawer {
     pixels.depth = settings.has_depth() ? planes.depth.data() : nullptr;
     pixels.stride = image.width;
     pixels.origin = (place.y0 - at.y0) * pixels.stride + (place.x0 - at.x0);
-    pixels.window = part_in(place, context_.frame.contained);
+    // An image that is smaller than the tile has no more.
+    pixels.window = part_in(place, geometry::intersection(context_.frame.contained, placed_at(at)));
     tiles_[static_cast<std::size_t>(tile)] = pixels;
   }
 

@@ -42,11 +42,16 @@ IceTCommunicator duplicate(IceTCommunicator self) {
   return make_table(own);
 }
 
-void destroy(IceTCommunicator self) {
-  auto* const own = static_cast<MPI_Comm*>(self->data);
+// Of a program that has not used MPI this is false.
+bool is_finalized() {
   int finalized = 0;
   MPI_Finalized(&finalized);
-  if (finalized == 0) MPI_Comm_free(own);
+  return finalized != 0;
+}
+
+void destroy(IceTCommunicator self) {
+  auto* const own = static_cast<MPI_Comm*>(self->data);
+  if (!is_finalized()) MPI_Comm_free(own);
   delete own;
   delete self;
 }
@@ -178,6 +183,12 @@ std::unique_ptr<comm::Communicator> make_ranks(IceTCommunicator given) {
   if (given == nullptr) throw Error(ICET_INVALID_VALUE, "there is no communicator");
   if (const void* const own = mpi_of(given)) return comm::make_mpi_communicator(own);
   return make_program_communicator(given);
+}
+
+void end_ranks(std::unique_ptr<comm::Communicator> ranks) {
+  if (is_finalized()) {
+    [[maybe_unused]] auto* const leaked = ranks.release();
+  }
 }
 
 }  // namespace delray::icet

@@ -316,10 +316,32 @@ void draw_nothing(const IceTDouble*, const IceTDouble*, const IceTFloat*, const 
   throw 1;
 }
 
+// Images smaller than the tile leave the rest to the background.
+void draw_white(const IceTDouble*, const IceTDouble*, const IceTFloat*, const IceTInt*,
+                IceTImage image) {
+  for (int i = 0; i < 4 * icetImageGetNumPixels(image); ++i) icetImageGetColorub(image)[i] = 255;
+  for (int i = 0; i < icetImageGetNumPixels(image); ++i) icetImageGetDepthf(image)[i] = 0;
+}
+void test_small_images(const Rect& tile) {
+  set_format(kFormats[0], order_of(1));
+  icetBoundingVertices(0, ICET_NULL, 0, 0, nullptr);
+  icetDrawCallback(&draw_white);
+  icetPhysicalRenderSize(10, 7);
+  CHECK(icetGetError() == ICET_INVALID_VALUE);  // a warning
+  const IceTImage image = icetDrawFrame(kIdentity, kIdentity, kBackground);
+  const int width = tile.x1 - tile.x0, height = tile.y1 - tile.y0;
+  for (int i = 0; icetImageIsNull(image) == ICET_FALSE && i < width * height; ++i) {
+    const bool is_drawn = i % width < 10 && i / width < 7;
+    CHECK(icetImageGetColorcub(image)[4 * i] == (is_drawn ? 255 : scene::byte(kBackground[0])));
+  }
+  icetPhysicalRenderSize(width, height);
+}
+
 void test_errors() {
   icetDiagnostics(ICET_DIAG_OFF);
   Rect display;
   set_tiles(false, display);
+  test_small_images(display);
   set_format(kFormats[0], order_of(1));
   icetBoundingVertices(0, ICET_NULL, 0, 0, nullptr);
   icetDrawCallback(&draw_twice);

@@ -1,6 +1,7 @@
 /* Preloaded before whatever has IceT's interface: writes down the images that a program's frames
- * give, as FRAMES.rank.frame, and a line of times for each to FRAMES.rank. The program notices
- * nothing. */
+ * give, as FRAMES.rank.frame, and a line for each to FRAMES.rank, with the times that the interface
+ * tells and when, by a clock that processes share, all was drawn and the frame was done. The
+ * program notices nothing. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stdint.h>
@@ -19,10 +20,24 @@ static double now(void) {
   return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+static IceTDrawCallbackType draw;
+static double drawn_at;
+
+static void draw_and_note(const IceTDouble* projection, const IceTDouble* modelview,
+                          const IceTFloat* background, const IceTInt* readback, IceTImage result) {
+  draw(projection, modelview, background, readback, result);
+  drawn_at = now();
+}
+
+void icetDrawCallback(IceTDrawCallbackType callback) {
+  draw = callback;
+  NEXT(icetDrawCallback)(callback == NULL ? NULL : draw_and_note);
+}
+
 IceTImage icetDrawFrame(const IceTDouble* projection, const IceTDouble* modelview,
                         const IceTFloat* background) {
   static int frame = 0;
-  const double begin = now();
+  const double begin = drawn_at = now();
   const IceTImage image = NEXT(icetDrawFrame)(projection, modelview, background);
   const double end = now();
   const char* const frames = getenv("FRAMES");
@@ -42,8 +57,8 @@ IceTImage icetDrawFrame(const IceTDouble* projection, const IceTDouble* modelvie
   snprintf(path, sizeof path, "%s.%d", frames, rank);
   file = fopen(path, "a");
   if (file == NULL) abort();
-  fprintf(file, "%d %d %d %d %x %.9f %.9f %.9f\n", frame, tile, width, height, (unsigned)mode,
-          end - begin, composite, render);
+  fprintf(file, "%d %d %d %d %x %.9f %.9f %.9f %.9f %.9f\n", frame, tile, width, height,
+          (unsigned)mode, end - begin, composite, render, drawn_at, end);
   fclose(file);
   if (width > 0 && NEXT(icetImageGetColorFormat)(image) == ICET_IMAGE_COLOR_RGBA_UBYTE) {
     snprintf(path, sizeof path, "%s.%d.%d", frames, rank, frame);
