@@ -180,10 +180,12 @@ class FrameComposition {
     return dynamic_cast<composite::ImageLayer<Colour>&>(tile).image();
   }
 
-  // Pixels of one tile that is kept where they were merged have to be neighbours.
+  // Pixels of one tile that is kept where they were merged have to be neighbours. The feature, on by
+  // default, allows interlacing; of four and eight ranks it took 1.3 to 1.6 times as long.
   bool interlaces() const {
+    constexpr int kFewestRanks = 16;
     return settings_.is_enabled(ICET_INTERLACE_IMAGES) &&
-           settings_.is_enabled(ICET_COLLECT_IMAGES) && ranks_.size() > 2;
+           settings_.is_enabled(ICET_COLLECT_IMAGES) && ranks_.size() >= kFewestRanks;
   }
 
   image::BasicImage<Colour> new_image(std::size_t tile) {

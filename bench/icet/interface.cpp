@@ -28,6 +28,8 @@ struct Options {
   std::string delray = DELRAY_ICET_LIBRARY;
   bool tiles = false;  // 2 x 2, shown by the first four processes
   bool draws = false;  // by a callback instead of images that are there
+  bool interlaces = true;
+  double skew = 0;     // milliseconds by which each process begins after the one before, computing
 };
 
 // Functions of one of the two, looked up by name.
@@ -145,13 +147,17 @@ class Side {
   Side(const Side&) = delete;
   Side& operator=(const Side&) = delete;
 
-  // Seconds from the moment all begin until the last is done; `composite` by the library's clock.
+  // Seconds from the moment the last begins until the last is done; `composite` by the library's clock.
   void run(const Picture& picture) {
     ICET(library_, icetSetContext)(context_);
     const IceTFloat background[4] = {0, 0, 0, 0};
     const IceTDouble identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     drawn() = {&library_, &picture};
-    const double begin = begin_together(ranks_);
+    double begin = begin_together(ranks_);
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    while (now() < begin + 1e-3 * options_.skew * rank) continue;
+    begin += 1e-3 * options_.skew * (ranks_ - 1);
     image_ = options_.draws ? ICET(library_, icetDrawFrame)(identity, identity, background)
                             : ICET(library_, icetCompositeImage)(
                                   picture.colour.data(), blended_ ? nullptr : picture.depth.data(),
@@ -189,6 +195,7 @@ class Side {
     }
     ICET(library_, icetStrategy)
     (options_.tiles ? ICET_STRATEGY_REDUCE : ICET_STRATEGY_SEQUENTIAL);
+    if (!options_.interlaces) ICET(library_, icetDisable)(ICET_INTERLACE_IMAGES);
     ICET(library_, icetSetColorFormat)(ICET_IMAGE_COLOR_RGBA_UBYTE);
     ICET(library_, icetDrawCallback)(&copy_picture);
     ICET(library_, icetSetDepthFormat)
@@ -264,6 +271,8 @@ int main(int argc, char** argv) {
   app.add_option("--pictures", options.pictures, "discs, random, full, blended");
   app.add_option("--icet", options.icet, "IceT's library for MPI");
   app.add_option("--delray", options.delray, "libdelray_icet.so.1");
+  app.add_option("--skew", options.skew, "Milliseconds from one process's beginning to the next's");
+  app.add_flag("!--no-interlace", options.interlaces, "Without ICET_INTERLACE_IMAGES");
   app.add_flag("--tiles", options.tiles, "2 x 2 tiles, by four processes or more");
   app.add_flag("--draws", options.draws,
                "icetDrawFrame, with a callback, in place of icetCompositeImage");

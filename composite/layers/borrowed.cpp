@@ -28,6 +28,7 @@ template <class Colour>
 struct SomePixels {
   const Colour* colour = nullptr;
   const float* depth = nullptr;
+  bool as_layer = false;  // empty ones are as layers have them, not as they were borrowed
   image::Plane<Colour> own_colour;
   image::Plane<float> own_depth;
 };
@@ -45,23 +46,17 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
   }
 
   comm::Buffer encode(PixelRange range) override {
-    const PixelRange blocks = blocks_of(range);
-    const auto settled = [&](bool value) {
-      return std::find(is_settled_.begin() + static_cast<std::ptrdiff_t>(blocks.begin),
-                       is_settled_.begin() + static_cast<std::ptrdiff_t>(blocks.end),
-                       value) != is_settled_.begin() + static_cast<std::ptrdiff_t>(blocks.end);
-    };
-    if (settled(true)) {
-      if (settled(false)) settle_blocks(blocks);
+    const bool forgets_depth = by_depth_ && !this->has_depth();
+    if (forgets_depth) settle_range(range);
+    if (forgets_depth || settled(blocks_of(range)) == Settled::all)
       return ActiveLayer<Colour>::encode(range);
-    }
     const Coverage coverage(range.size(),
                             [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
-                              return find(range.begin + begin, range.begin + end, mask);
+                              return find({range.begin + begin, range.begin + end}, mask);
                             });
     return internal::encode_active<Colour>(
         coverage, by_depth_, [&](std::uint64_t begin, std::uint64_t end) {
-          return view(range.begin + begin, range.begin + end, /*colours=*/true);
+          return view({range.begin + begin, range.begin + end}, /*colours=*/true);
         });
   }
 
@@ -72,8 +67,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
     for (std::uint64_t first = 0; first < kStride; ++first) {
       for (std::uint64_t i = first; i < is_settled_.size(); i += kStride) {
         GroupMask mask{};
-        const PixelRange block = block_pixels(i);
-        if (find(block.begin, block.end, mask) > 0) return false;
+        if (find(block_pixels(i), mask) > 0) return false;
       }
     }
     return true;
@@ -84,7 +78,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
  protected:
   using typename ImageLayer<Colour>::Action;
   std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) override {
-    PixelRange blocks = blocks_of(range);
+    const PixelRange blocks = blocks_of(range);
     if (action == Action::replace) {
       // Only at its ends others are left in a block.
       if (blocks.begin < blocks.end) settle_blocks({blocks.begin, blocks.begin + 1});
@@ -105,41 +99,104 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
     return {block * kGroupPixels, std::min((block + 1) * kGroupPixels, this->pixels())};
   }
 
-  std::uint64_t find(std::uint64_t begin, std::uint64_t end, GroupMask& mask) const {
-    const auto width = static_cast<std::uint64_t>(this->image().width);
-    const auto first_row = static_cast<int>(begin / width);
-    const auto last_row = static_cast<int>((end - 1) / width);
-    if (from_.window.empty() || last_row < from_.window.y0 || first_row >= from_.window.y1)
-      return 0;
-    const SomePixels<Colour> some = view(begin, end, /*colours=*/!by_depth_);
-    return by_depth_ ? find_nearer(std::span(some.depth, end - begin), from_.empty_depth, mask)
-                     : find_with_alpha(std::span(some.colour, end - begin), mask);
+  // Of some blocks.
+  enum class Settled : std::uint8_t { none, some, all };
+  Settled settled(PixelRange blocks) const {
+    const auto begin = is_settled_.begin();
+    const auto count = std::count(begin + static_cast<std::ptrdiff_t>(blocks.begin),
+                                  begin + static_cast<std::ptrdiff_t>(blocks.end), 1);
+    if (count == 0) return Settled::none;
+    return static_cast<std::uint64_t>(count) == blocks.size() ? Settled::all : Settled::some;
   }
 
-  // Pixels of the layer's order that lie in no more than a group, of which depths and, if asked
-  // for, colours are needed.
-  SomePixels<Colour> view(std::uint64_t begin, std::uint64_t end, bool colours) const {
+  // The covered ones of no more than a group of pixels.
+  std::uint64_t find(PixelRange pixels, GroupMask& mask) const {
+    const auto width = static_cast<std::uint64_t>(this->image().width);
+    const auto first_row = static_cast<int>(pixels.begin / width);
+    const auto last_row = static_cast<int>((pixels.end - 1) / width);
+    const bool is_outside =
+        from_.window.empty() || last_row < from_.window.y0 || first_row >= from_.window.y1;
+    if (is_outside && settled(blocks_of(pixels)) == Settled::none) return 0;
+    const SomePixels<Colour> some = view(pixels, /*colours=*/!by_depth_);
+    if (by_depth_) {
+      const std::span depths(some.depth, pixels.size());
+      return some.as_layer ? internal::find_covered(depths, mask)
+                           : find_nearer(depths, from_.empty_depth, mask);
+    }
+    const std::span colours(some.colour, pixels.size());
+    return some.as_layer ? internal::find_coloured(colours, mask) : find_with_alpha(colours, mask);
+  }
+
+  // No more than a group of pixels, of which depths and, if asked for, colours are needed.
+  SomePixels<Colour> view(PixelRange pixels, bool colours) const {
+    const PixelRange blocks = blocks_of(pixels);
+    SomePixels<Colour> result;
+    switch (settled(blocks)) {
+      case Settled::none:
+        return borrowed_view(pixels, colours);
+      case Settled::all:
+        result.colour = this->image().colour.data() + pixels.begin;
+        result.depth = this->image().depth.data() + pixels.begin;
+        break;
+      case Settled::some:
+        result.own_colour = image::Plane<Colour>(pixels.size());
+        result.own_depth = image::Plane<float>(pixels.size());
+        for (std::uint64_t i = blocks.begin; i < blocks.end; ++i) {
+          const PixelRange part = internal::overlap(pixels, block_pixels(i));
+          Colour* const colour = result.own_colour.data() + (part.begin - pixels.begin);
+          float* const depth = result.own_depth.data() + (part.begin - pixels.begin);
+          if (is_settled_[i] == 0) {
+            take(part, colour, depth);
+            continue;
+          }
+          std::copy_n(this->image().colour.data() + part.begin, part.size(), colour);
+          if (by_depth_) std::copy_n(this->image().depth.data() + part.begin, part.size(), depth);
+        }
+        result.colour = result.own_colour.data();
+        result.depth = result.own_depth.data();
+    }
+    result.as_layer = true;
+    return result;
+  }
+
+  // Borrowed pixels become those of a layer.
+  void take(PixelRange pixels, Colour* colour, float* depth) const {
+    const SomePixels<Colour> some = borrowed_view(pixels, /*colours=*/true);
+    if (!by_depth_) {
+      for (std::size_t k = 0; k < pixels.size(); ++k) {
+        colour[k] = some.colour[k].a != 0 ? some.colour[k] : Colour{};
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      const bool covered = some.depth[k] < from_.empty_depth;
+      colour[k] = covered ? some.colour[k] : Colour{};
+      depth[k] = covered ? some.depth[k] : image::kEmptyDepth;
+    }
+  }
+
+  SomePixels<Colour> borrowed_view(PixelRange pixels, bool colours) const {
     const auto width = static_cast<std::ptrdiff_t>(this->image().width);
-    const auto first_row = static_cast<int>(static_cast<std::ptrdiff_t>(begin) / width);
-    const auto last_row = static_cast<int>(static_cast<std::ptrdiff_t>(end - 1) / width);
+    const auto begin = static_cast<std::ptrdiff_t>(pixels.begin);
+    const auto first_row = static_cast<int>(begin / width);
+    const auto last_row = static_cast<int>((static_cast<std::ptrdiff_t>(pixels.end) - 1) / width);
     const geometry::Rect& window = from_.window;
     SomePixels<Colour> result;
     const bool whole_rows = window.x0 == 0 && window.x1 == width && from_.stride == width &&
                             first_row >= window.y0 && last_row < window.y1;
-    const std::ptrdiff_t first = from_.origin + static_cast<std::ptrdiff_t>(begin);
     if (by_depth_) {
       if (whole_rows) {
-        result.depth = from_.depth + first;
+        result.depth = from_.depth + (from_.origin + begin);
       } else {
-        result.own_depth = copy(from_.depth, from_.empty_depth, begin, end);
+        result.own_depth = copy(from_.depth, from_.empty_depth, pixels);
         result.depth = result.own_depth.data();
       }
     }
     if (!colours) return result;
     if (whole_rows && from_.colour != nullptr) {
-      result.colour = from_.colour + first;
+      result.colour = from_.colour + (from_.origin + begin);
     } else {
-      result.own_colour = copy(from_.colour, Colour{}, begin, end);
+      result.own_colour = copy(from_.colour, Colour{}, pixels);
       result.colour = result.own_colour.data();
     }
     return result;
@@ -147,12 +204,13 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
 
   // Values of pixels, `outside` where there are none.
   template <class T>
-  image::Plane<T> copy(const T* plane, T outside, std::uint64_t begin, std::uint64_t end) const {
-    image::Plane<T> result(end - begin);
+  image::Plane<T> copy(const T* plane, T outside, PixelRange pixels) const {
+    image::Plane<T> result(pixels.size());
     std::fill_n(result.data(), result.size(), outside);
     if (plane == nullptr || from_.window.empty()) return result;
     const auto width = static_cast<std::ptrdiff_t>(this->image().width);
-    const auto b = static_cast<std::ptrdiff_t>(begin), e = static_cast<std::ptrdiff_t>(end);
+    const auto b = static_cast<std::ptrdiff_t>(pixels.begin);
+    const auto e = static_cast<std::ptrdiff_t>(pixels.end);
     const geometry::Rect& window = from_.window;
     for (std::ptrdiff_t y = std::max<std::ptrdiff_t>(b / width, window.y0);
          y < window.y1 && y * width < e; ++y) {
@@ -168,22 +226,10 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
   void settle_blocks(PixelRange blocks) {
     parallel::parallel_for(blocks.begin, blocks.end, internal::kGroupsGrain, [&](std::size_t i) {
       if (is_settled_[i] != 0) return;
-      is_settled_[i] = 1;
       const PixelRange block = block_pixels(i);
-      const SomePixels<Colour> some = view(block.begin, block.end, /*colours=*/true);
-      Colour* const colour = this->image().colour.data() + block.begin;
-      if (!by_depth_) {
-        for (std::size_t k = 0; k < block.size(); ++k) {
-          colour[k] = some.colour[k].a != 0 ? some.colour[k] : Colour{};
-        }
-        return;
-      }
-      float* const depth = this->image().depth.data() + block.begin;
-      for (std::size_t k = 0; k < block.size(); ++k) {
-        const bool covered = some.depth[k] < from_.empty_depth;
-        colour[k] = covered ? some.colour[k] : Colour{};
-        depth[k] = covered ? some.depth[k] : image::kEmptyDepth;
-      }
+      take(block, this->image().colour.data() + block.begin,
+           this->image().depth.data() + block.begin);
+      is_settled_[i] = 1;
     });
   }
 

@@ -159,7 +159,8 @@ TEST(Borrowed, EverySchemeGivesWhatItGivesOfCopies) {
         comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
           const auto mine = render<Rgba8>(67, 91, static_cast<unsigned>(communicator.rank()) + 5);
           const auto whole = [&](std::unique_ptr<Layer> layer) {
-            OwnedPixels part = compose(communicator, std::move(layer), scheme.name);
+            OwnedPixels part = compose(communicator, std::move(layer), scheme.name,
+                                       {.interlace = how == Operator::over});
             for (const PixelRange& range : part.ranges) settle(*part.layer, range);
             return take_image<Rgba8>(gather(communicator, std::move(part), 0));
           };
