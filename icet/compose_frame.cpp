@@ -181,7 +181,7 @@ class FrameComposition {
   }
 
   // Pixels of one tile that is kept where they were merged have to be neighbours. The feature, on by
-  // default, allows interlacing; of four and eight ranks it took 1.3 to 1.6 times as long.
+  // default, allows interlacing; of four and eight ranks it took up to 1.6 times as long.
   bool interlaces() const {
     constexpr int kFewestRanks = 16;
     return settings_.is_enabled(ICET_INTERLACE_IMAGES) &&
