@@ -7,11 +7,10 @@
 #include "icet/compose_frame.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
-#include <functional>
+#include <cstdint>
 #include <memory>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "comm/forwarding.h"
@@ -180,8 +179,8 @@ class FrameComposition {
     return dynamic_cast<composite::ImageLayer<Colour>&>(tile).image();
   }
 
-  // Pixels of one tile that is kept where they were merged have to be neighbours. The feature, on by
-  // default, allows interlacing; of four and eight ranks it took up to 1.6 times as long.
+  // Pixels of one tile that is kept where they were merged have to be neighbours. The feature, on
+  // by default, allows interlacing; of four and eight ranks it took up to 1.6 times as long.
   bool interlaces() const {
     constexpr int kFewestRanks = 16;
     return settings_.is_enabled(ICET_INTERLACE_IMAGES) &&

@@ -1,11 +1,9 @@
 // Behind IceTContext: everything that the interface sets, and what the last frame was.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "comm/communicator.h"

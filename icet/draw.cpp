@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <exception>
 #include <glm/gtc/type_ptr.hpp>
+#include <type_traits>
 #include <utility>
 #include <vector>
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -44,7 +43,7 @@ class ImagePool {
   }
   // Of several sizes the one that was given back first goes.
   template <class Pixels>
-  static void give_back_to(std::vector<Pixels>& kept, Pixels&& image) {
+  static void give_back_to(std::vector<Pixels>& kept, Pixels image) {
     if (image.pixels() == 0) return;
     if (kept.size() == kMost) kept.erase(kept.begin());
     kept.push_back(std::move(image));

@@ -1,8 +1,10 @@
 // Functions that set what a frame is drawn with: tiles, bounds, formats, order, features.
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
-#include <string>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "comm/collectives.h"

@@ -3,13 +3,11 @@
 // All numbers of the interface are exact as doubles, so that one function for each row does for all
 // types that a program may ask for.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
-#include <span>
-#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "icet/context.h"

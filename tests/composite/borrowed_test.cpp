@@ -46,10 +46,10 @@ Rendered<Colour> render(int width, int height, unsigned seed, bool without_colou
   const bool has_gaps = random() % 2 == 0;
   const int stride = has_gaps ? width + 1 + static_cast<int>(random() % 20) : width;
   const int before = has_gaps ? static_cast<int>(random() % 100) : 0;
-  const auto size = static_cast<std::size_t>(before + stride * height + 16);
-  made.colour.resize(size);
-  made.depth.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
+  const int size = before + stride * height + 16;
+  made.colour.resize(static_cast<std::size_t>(size));
+  made.depth.resize(static_cast<std::size_t>(size));
+  for (std::size_t i = 0; i < made.colour.size(); ++i) {
     made.colour[i] = random_colour(random, Colour{});
     const float depths[] = {0.25F, 0.5F, 0.75F, 1, 2, std::numeric_limits<float>::quiet_NaN()};
     made.depth[i] = depths[random() % 6];
@@ -80,7 +80,8 @@ BasicImage<Colour> copy_of(const Rendered<Colour>& from, Operator how) {
       const bool covered = pixels.window.contains(x, y) &&
                            (how == Operator::nearest ? from.depth[at] < 1 : from.colour[at].a != 0);
       if (!covered) continue;
-      const auto to = static_cast<std::size_t>(y * from.width + x);
+      const int pixel = y * from.width + x;
+      const auto to = static_cast<std::size_t>(pixel);
       image.colour[to] = pixels.colour != nullptr ? from.colour[at] : Colour{};
       image.depth[to] = from.depth[at];
     }
