@@ -154,7 +154,8 @@ int verify_file(const VerifyOptions& options) {
                                  options.mesh, mesh.triangulation.dim));
   }
   const Matched matched = match(options, mesh, load_points(options.points, options.dim));
-  const delaunay::Verdict verdict = verify_simplices(
+  const auto check_simplices = options.part ? &delaunay::verify_part : &delaunay::verify_simplices;
+  const delaunay::Verdict verdict = check_simplices(
       options.dim, delaunay::view(mesh.points.positions), mesh.triangulation.vertices);
 
   const bool good = (options.canonical ? verdict.canonical : verdict.delaunay) &&
@@ -199,6 +200,7 @@ int verify_file(const VerifyOptions& options) {
 int run(Session& session, const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
   if (packs::is_pack(options.mesh)) {
+    if (options.part) throw UsageError("--part: not of a pack");
     check_outputs({{"--stats", options.statistics}}, {options.mesh});
     return verify_pack(session, options);
   }
@@ -208,6 +210,9 @@ int run(Session& session, const VerifyOptions& options) {
   check_outputs({{"--stats", options.statistics}}, inputs);
   tell_left_out(options.points);
   check(session, options.launch);
+  if (options.part && (options.dim > 3 || delaunay::is_mesh_folder(options.mesh))) {
+    throw UsageError("--part: of a mesh in one file, in 2D or 3D");
+  }
   if (options.dim > 3) return verify_beyond_space(session, options);
   if (delaunay::is_mesh_folder(options.mesh)) return verify_folder(session, options);
   refuse_parts_of_folders(options.mesh);
@@ -249,6 +254,9 @@ void add_verify(CLI::App& program, Session& session) {
   command->add_flag(
       "--complete", options->complete,
       "Also demand that every point is a vertex (simplified terrains leave some out)");
+  command->add_flag("--part", options->part,
+                    "Let simplices be missing, as outside of an outline that triangulate "
+                    "--min-angle refined: those there are must be canonical");
   command
       ->add_option("--stats", options->statistics,
                    "Verdict as JSON to this file; - for standard output")

@@ -84,6 +84,9 @@ std::span<const RefinementMethod> refinement_methods();
 // Ends for min_angle <= kProvenAngle; beyond, where points would come closer than doubles tell
 // apart, the triangle stays and is counted.
 //
+// Method "chew" calls a triangle large by its circle and cuts it at the centre of that (Chew 1989);
+// "okusanya" lets threads do it, by locks.
+//
 // Segments that cross get a point there; parts of segments that lie upon each other count once.
 // Expected O(n log n) for n points of the result.
 //

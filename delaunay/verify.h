@@ -48,6 +48,13 @@ Verdict verify_simplices(int dim, PointView<double> points,
 // As verify_simplices() with `dim` 2.
 Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t> triangles);
 
+// Whether the simplices are some of the Delaunay triangulation that the project promises, as those
+// within an outline are (refine.h): that is made, and verified as above before anything is looked
+// up in it. The properties hold all or none. Orientation does not count. O(n log n).
+//
+// Throws as verify_simplices() and triangulate(); also where vertices are no rows.
+Verdict verify_part(int dim, PointView<double> points, std::span<const std::uint32_t> simplices);
+
 // The lowest row in which coordinates 0 .. dim-1 of two point sets differ (-0 equals 0), and be it
 // that one of them ends there; none if they are equal. A mesh file brings its own vertices: they
 // must be the points before its triangles say anything about these. O(n).

@@ -15,6 +15,7 @@ struct VerifyOptions {
   PointInput points;
   int dim = 2;
   bool canonical = false, complete = false;
+  bool part = false;  // simplices may be missing
   Launch launch;
   std::string scratch;  // a folder; empty: the system's
 };

@@ -5,6 +5,7 @@
 
 #include "delaunay/dimensions.h"
 #include "delaunay/files/input.h"
+#include "delaunay/files/text_rows.h"
 #include "delaunay/outline.h"
 #include "delaunay/points.h"
 #include "delaunay/read_mesh.h"
@@ -60,6 +61,27 @@ PointMesh read_vtu_mesh(const Input& input);
 PointMesh read_node_mesh(const Input& input, const Input& elements);
 // As of outline.h; `nodes` is the .node file beside it, null where there is none.
 Outline read_outline(const Input& input, const Input* nodes);
+// Tables of .node, .ele and .poly: a line of counts, then rows that begin with a number.
+struct NodeTable {
+  RowIndex rows;
+  std::int64_t columns = 0;     // dimension of points, corners of elements
+  std::int64_t attributes = 0;  // per row
+};
+
+// The table that begins at `begin`: "rows columns attributes". Throws FileError where counts are
+// missing or negative and where there are fewer rows.
+NodeTable find_node_table(const Input& input, const char* what, TextPlace begin = {});
+
+// The same of rows that are counted by a line of their own, "rows ...", as in .poly.
+NodeTable find_counted_rows(const Input& input, const char* what, TextPlace begin);
+
+// The number of the first row: 0 or 1.
+std::int64_t first_number(const Input& input, const NodeTable& table);
+
+// Points of dimension 2 or 3, numbered from `base`; the first attribute of points of the plane is
+// their z.
+PointCloud read_points_of(const Input& input, const NodeTable& table, std::int64_t base);
+
 // As of dimensions.h.
 PointTable read_point_table(const Input& input);
 TableMesh read_table_mesh(const Input& input, const Input& elements);

@@ -3,7 +3,6 @@
 // "number corners attributes". Numbers begin with 0 or 1. Of points in the plane the first
 // attribute is taken as z.
 #include "delaunay/dimensions.h"
-#include "delaunay/files/node_table.h"
 #include "delaunay/files/point_readers.h"
 
 namespace delray::delaunay {

@@ -21,8 +21,8 @@ constexpr CornerNumber kNoCorner = 0xffffffffU;
 
 class SegmentRecovery {
  public:
-  SegmentRecovery(RefinementMesh& mesh, std::size_t most_vertices, RefineCounts& counts)
-      : mesh_(mesh), most_vertices_(most_vertices), counts_(counts), near_(mesh.vertices) {
+  SegmentRecovery(RefinementMesh& mesh, const RefinementLimits& limits, RefineCounts& counts)
+      : mesh_(mesh), limits_(limits), counts_(counts), near_(mesh.vertices) {
     for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
       if (mesh.mesh.is_dead(t)) continue;
       for (unsigned k = 0; k < 3; ++k) note(mesh.mesh.vertex(t, k), t);
@@ -70,15 +70,23 @@ class SegmentRecovery {
            orient2d(mesh_.points[a], mesh_.points[b], mesh_.points[v]) == 0;
   }
 
-  // The corner opposite to the edge between two vertices, if there is one.
-  CornerNumber edge_between(VertexNumber a, VertexNumber b) const {
-    const CornerNumber first = corner_at(a);
-    CornerNumber corner = first;
-    do {
-      if (vertex(next_corner(corner)) == b) return previous_corner(corner);
-      corner = turn(corner);
-    } while (corner != first);
-    return kNoCorner;
+  // The corner opposite to the edge between two vertices, if there is one, and that of the two that
+  // has fewer neighbours: one of them may have very many.
+  struct Between {
+    CornerNumber edge = kNoCorner;
+    bool fewer_at_second = false;
+  };
+  Between edge_between(VertexNumber a, VertexNumber b) const {
+    const CornerNumber first_at_a = corner_at(a), first_at_b = corner_at(b);
+    CornerNumber at_a = first_at_a, at_b = first_at_b;
+    for (;;) {
+      if (vertex(next_corner(at_a)) == b) return {previous_corner(at_a), false};
+      if (vertex(next_corner(at_b)) == a) return {previous_corner(at_b), false};
+      at_a = turn(at_a);
+      if (at_a == first_at_a) return {kNoCorner, false};
+      at_b = turn(at_b);
+      if (at_b == first_at_b) return {kNoCorner, true};
+    }
   }
 
   // The first thing along a piece that is no edge.
@@ -121,14 +129,15 @@ class SegmentRecovery {
   }
 
   void recover_piece(VertexNumber a, VertexNumber b) {
-    if (const CornerNumber edge = edge_between(a, b); edge != kNoCorner) {
+    const auto [edge, fewer_at_second] = edge_between(a, b);
+    if (edge != kNoCorner) {
       for (const CornerNumber side : {edge, mesh_.mesh.neighbour(edge)}) {
         if (is_on(a, b, vertex(side))) return add(a, vertex(side), b);
       }
       mesh_.mark_segment(edge, true);
       return;
     }
-    const Obstacle obstacle = look_along(a, b);
+    const Obstacle obstacle = fewer_at_second ? look_along(b, a) : look_along(a, b);
     if (obstacle.vertex != kInfiniteVertex) return add(a, obstacle.vertex, b);
     if (obstacle.across != kNoCorner) return cross(a, b, obstacle.across);
     cut_in_the_middle(a, b);
@@ -183,10 +192,11 @@ class SegmentRecovery {
 
   // Into the cavity that was found.
   VertexNumber insert(const glm::dvec2& q) {
-    if (mesh_.vertices >= most_vertices_) {
-      throw std::length_error("segments take more than " + std::to_string(most_vertices_) +
+    if (mesh_.vertices >= limits_.most_vertices) {
+      throw std::length_error("segments take more than " + std::to_string(limits_.most_vertices) +
                               " points");
     }
+    if (limits_.progress != nullptr) limits_.progress->advance();
     mesh_.reserve(1);
     const VertexNumber v = mesh_.vertices++;
     mesh_.points[v] = q;
@@ -204,7 +214,7 @@ class SegmentRecovery {
   }
 
   RefinementMesh& mesh_;
-  std::size_t most_vertices_;
+  const RefinementLimits& limits_;
   RefineCounts& counts_;
   SoleRefinementAccess access_;
   RefinementCavity cavity_;
@@ -216,8 +226,8 @@ class SegmentRecovery {
 }  // namespace
 
 void recover_segments(RefinementMesh& mesh, std::span<const SegmentEnds> segments,
-                      std::size_t most_vertices, RefineCounts& counts) {
-  SegmentRecovery recovery(mesh, most_vertices, counts);
+                      const RefinementLimits& limits, RefineCounts& counts) {
+  SegmentRecovery recovery(mesh, limits, counts);
   for (const SegmentEnds& segment : segments) recovery.recover(segment);
 }
 

@@ -7,6 +7,7 @@
 
 #include "delaunay/refine.h"
 #include "delaunay/refinement/refinement_mesh.h"
+#include "delaunay/refinement/refinement_runs.h"
 
 namespace delray::delaunay::internal {
 
@@ -15,9 +16,9 @@ namespace delray::delaunay::internal {
 // segment goes through it; where two cross, both get a vertex. Segments with equal ends are left
 // out. The vertices that this adds lie on no segment: pieces are segments from now on.
 //
-// `most_vertices` may not be exceeded. Throws std::length_error. REQUIRES: a triangulation of the
-// vertices without marks.
+// Throws std::length_error, parallel::Interrupted. REQUIRES: a triangulation of the vertices
+// without marks.
 void recover_segments(RefinementMesh& mesh, std::span<const SegmentEnds> segments,
-                      std::size_t most_vertices, RefineCounts& counts);
+                      const RefinementLimits& limits, RefineCounts& counts);
 
 }  // namespace delray::delaunay::internal

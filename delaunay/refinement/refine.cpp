@@ -316,12 +316,11 @@ std::uint64_t count_excepted(const RefinementMesh& mesh, const internal::Triangl
 
 Refined refine(const Outline& outline, const RefineOptions& options) {
   check(outline, options);
-  const auto run = internal::refinement_run(options.method);
+  const internal::RefinementWay way = internal::refinement_way(options.method);
   Task task{outline, options, {}, {}, {}};
   Options how;
   how.threads = options.threads;
   BuiltMesh<2> built = build_mesh<2>(view(outline.points.positions), how);
-  const std::size_t most = most_vertices(options);
   if (is_flat(built.mesh)) {
     Refined flat;
     flat.points = outline.points.positions;
@@ -332,11 +331,13 @@ Refined refine(const Outline& outline, const RefineOptions& options) {
   std::optional<Triangulation> given;
   if (outline.points.has_z) given = result_of(task).triangulation;
   RefinementMesh& mesh = task.mesh;
-  recover_segments(mesh, segments_of(task), most, task.counts);
+  const internal::RefinementLimits limits{options.threads, most_vertices(options),
+                                          options.progress};
+  recover_segments(mesh, segments_of(task), limits, task.counts);
   std::vector<SmallCorner> corners = find_small_corners(task);
   find_domain(task);
-  const internal::TriangleBounds bounds(options.min_angle, options.max_area);
-  run(mesh, bounds, {options.threads, most, options.progress}, task.counts);
+  const internal::TriangleBounds bounds(options.min_angle, options.max_area, way.measure);
+  way.run(mesh, bounds, limits, task.counts);
   make_delaunay(mesh);
   task.counts.excepted = count_excepted(mesh, bounds);
   Refined refined = result_of(task);

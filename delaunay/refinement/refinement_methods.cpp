@@ -9,18 +9,23 @@
 namespace delray::delaunay {
 namespace {
 
+using internal::Measure;
+
 struct Row {
   RefinementMethod method;
-  internal::RefinementRun run;
+  internal::RefinementWay way;
 };
 
 constexpr std::array kRows = {
     Row{{"ruppert", "one thread, the worst triangle first (Ruppert 1995)"},
-        &internal::refine_alone},
+        {&internal::refine_alone, Measure::area}},
+    Row{{"chew",
+         "one thread, triangles of one size by their circles, the largest first (Chew 1989)"},
+        {&internal::refine_alone, Measure::circle}},
     Row{{"okusanya",
          "threads that lock the triangles of a cavity, or are denied (Okusanya and Peraire 1996)",
          true},
-        &internal::refine_with_locks},
+        {&internal::refine_with_locks, Measure::area}},
 };
 
 constexpr auto kMethods = [] {
@@ -33,11 +38,11 @@ constexpr auto kMethods = [] {
 
 std::span<const RefinementMethod> refinement_methods() { return kMethods; }
 
-internal::RefinementRun internal::refinement_run(std::string_view name) {
+internal::RefinementWay internal::refinement_way(std::string_view name) {
   if (name == "auto") name = kRows.front().method.name;
   std::string names;
   for (const Row& row : kRows) {
-    if (row.method.name == name) return row.run;
+    if (row.method.name == name) return row.way;
     names += " " + std::string(row.method.name);
   }
   throw std::invalid_argument("no refinement is called \"" + std::string(name) + "\"; legal are" +

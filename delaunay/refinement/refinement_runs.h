@@ -21,8 +21,14 @@ struct RefinementLimits {
 using RefinementRun = void (*)(RefinementMesh& mesh, const TriangleBounds& bounds,
                                const RefinementLimits& limits, RefineCounts& counts);
 
+// A run, and what it takes for large.
+struct RefinementWay {
+  RefinementRun run;
+  Measure measure;
+};
+
 // Of a name in the table, or "auto". Throws std::invalid_argument, naming the methods.
-RefinementRun refinement_run(std::string_view name);
+RefinementWay refinement_way(std::string_view name);
 
 // One thread (Ruppert 1995).
 void refine_alone(RefinementMesh& mesh, const TriangleBounds& bounds,

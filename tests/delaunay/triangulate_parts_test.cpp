@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "comm/threads.h"
-#include "delaunay/cloud_parts.h"
 #include "delaunay/generate.h"
+#include "delaunay/point_parts.h"
 #include "files/error.h"
 #include "files/memory_budget.h"
 #include "tests/support/temporary_folder.h"

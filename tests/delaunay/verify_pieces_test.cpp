@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "comm/threads.h"
-#include "delaunay/cloud_parts.h"
 #include "delaunay/generate.h"
+#include "delaunay/point_parts.h"
 #include "delaunay/verify/piece_runs.h"
 #include "files/error.h"
 #include "files/memory_budget.h"

@@ -29,6 +29,8 @@ TEST(RefineCommand, RefinesAnOutlineAndSaysWhatWasReached) {
                                    reached["inside"].get<int>());
   EXPECT_TRUE(reached["small_corners"].is_array());
   EXPECT_NE(ran.err.find("angles from"), std::string::npos) << ran.err;
+  EXPECT_EQ(run("delray verify lake.node --points lake.node --part", folder.path()).exit_code, 0);
+  EXPECT_EQ(run("delray verify lake.node --points lake.node", folder.path()).exit_code, 4);
   // The domain is a part of the triangulation, all of which verifies.
   const Ran whole =
       run("delray triangulate lake.poly --min-angle 25 --whole -o whole.ply", folder.path());

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "delaunay/files/line_ends.h"
-#include "delaunay/files/node_table.h"
 #include "delaunay/files/point_readers.h"
 #include "delaunay/outline.h"
 #include "files/read_file.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <set>
 #include <stdexcept>
 
@@ -154,6 +155,23 @@ TEST(Refine, EveryMethodReachesTheAngleWithAnyThreads) {
   }
 }
 
+TEST(Refine, ChewsTrianglesAreOfOneSize) {
+  const double area = 1e-3, radius = std::sqrt(4 * area / (3 * std::sqrt(3.0)));
+  const RefineOptions options{.min_angle = 20, .max_area = area, .method = "chew"};
+  const Refined refined = checked(square(), options);
+  const Triangulation domain = domain_of(refined);
+  const Quality reached = quality(view(refined.points), domain);
+  double longest = 0;
+  for (std::size_t i = 0; i < domain.vertices.size(); ++i) {
+    const glm::dvec3 &a = refined.points[domain.vertices[i]],
+                     &b = refined.points[domain.vertices[i / 3 * 3 + (i + 1) % 3]];
+    longest = std::max(longest, glm::length(a - b));
+  }
+  EXPECT_LE(longest, 2 * radius);
+  EXPECT_GE(reached.mean_min_angle, 40);
+  EXPECT_GE(reached.min_angle, 25);
+}
+
 TEST(Refine, TheDomainHasTheAreaOfTheOutline) {
   for (const char* kind : {"lake", "country"}) {
     const Outline outline = generate_outline(kind, 400, 5);
@@ -170,6 +188,7 @@ TEST(Refine, TheDomainHasTheAreaOfTheOutline) {
 
 TEST(Refine, ReachesTheAngleOnHardPoints) {
   std::uint64_t seed = 0;
+  int reached_sets = 0;
   for (const HardPoints& kind : hard_points()) {
     Outline outline;
     for (const glm::dvec2& p : kind.make(60, ++seed)) outline.points.positions.emplace_back(p, 0);
@@ -185,10 +204,11 @@ TEST(Refine, ReachesTheAngleOnHardPoints) {
     const Verdict verdict = verify_triangles(view(refined.points), refined.triangulation.vertices);
     EXPECT_TRUE(verdict.valid && verdict.delaunay && verdict.canonical) << verdict.reason;
     const Quality reached = quality(view(refined.points), domain_of(refined));
-    if (reached.simplices > 0 && refined.counts.too_fine + refined.counts.excepted == 0) {
-      EXPECT_GE(reached.min_angle, 20);
-    }
+    if (reached.simplices == 0 || refined.counts.too_fine + refined.counts.excepted > 0) continue;
+    EXPECT_GE(reached.min_angle, 20);
+    ++reached_sets;
   }
+  EXPECT_GT(reached_sets, 10);
 }
 
 TEST(Refine, AnAngleOfZeroMakesSegmentsEdgesOnly) {
@@ -224,6 +244,44 @@ TEST(Refine, SegmentsGoThroughPointsOnThemAndCountOnce) {
   const Refined refined = checked(outline, {.min_angle = 20});
   EXPECT_NEAR(length_of(refined.points, refined.segments), 4, 1e-12);
   EXPECT_LT(refined.points.size(), 40U);
+}
+
+// A square with points and segments on a lattice: segments cross, go through points, lie upon each
+// other and meet at any angle, and triangles are right-angled.
+TEST(Refine, AnySegmentsOnALatticeAreKept) {
+  int refinements = 0;
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+    std::mt19937 random(seed);
+    Outline outline;
+    const auto side = 3 + random() % 6, points = 4 + random() % 20;
+    const double spacing = random() % 2 == 0 ? 1 : 0.1, start = random() % 4 == 0 ? 1e3 : 0;
+    const auto add = [&](std::uint64_t x, std::uint64_t y) {
+      outline.points.positions.emplace_back(start + spacing * static_cast<double>(x),
+                                            start + spacing * static_cast<double>(y), 0);
+    };
+    for (std::uint32_t i = 0; i < points; ++i) {
+      const auto x = random() % (side + 1), y = random() % (side + 1);
+      add(x, y);
+    }
+    const auto first = static_cast<std::uint32_t>(points);
+    add(0, 0);
+    add(side, 0);
+    add(side, side);
+    add(0, side);
+    for (std::uint32_t k = 0; k < 4; ++k)
+      outline.segments.push_back({first + k, first + (k + 1) % 4});
+    for (auto more = random() % 12; more > 0; --more) {
+      const auto a = static_cast<std::uint32_t>(random() % (points + 4)),
+                 b = static_cast<std::uint32_t>(random() % (points + 4));
+      outline.segments.push_back({a, b});
+    }
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    checked(outline, {.min_angle = static_cast<double>(random() % 31),
+                      .max_area = random() % 2 == 0 ? 0 : spacing * spacing / 8,
+                      .max_points = 100'000});
+    ++refinements;
+  }
+  EXPECT_EQ(refinements, 400);
 }
 
 TEST(Refine, SmallCornersAreListedAndExceptTheirTriangles) {
