@@ -15,6 +15,7 @@ void add_pack(CLI::App& program, Session& session);
 void add_compose(CLI::App& program, Session& session);
 void add_compare(CLI::App& program, Session& session);
 void add_replay(CLI::App& program, Session& session);
+void add_similar(CLI::App& program, Session& session);
 // These tell of all the others.
 void add_completion(CLI::App& program, Session& session);
 void add_manual(CLI::App& program, Session& session);

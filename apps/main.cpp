@@ -111,6 +111,7 @@ int run(int argc, char** argv) {
   add_compose(program, session);
   add_compare(program, session);
   add_replay(program, session);
+  add_similar(program, session);
   add_completion(program, session);
   add_manual(program, session);
   program.footer(

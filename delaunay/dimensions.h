@@ -42,6 +42,21 @@ Triangulation triangulate_dimensions(PointView<double> points, int dim, std::uin
 Verdict verify_dimensions(PointView<double> points, int dim,
                           std::span<const std::uint32_t> simplices);
 
+// A row and how far its point is.
+struct NearRow {
+  std::uint32_t row = 0;
+  double distance = 0;
+};
+
+// The `count` other rows nearest to a row, or all that there are, the nearest first. The Delaunay
+// triangulation of the points finds them: the next nearest is a neighbour of one before it. One
+// without simplices, of points that do not span the space, has all compared. Distances in floating
+// point. O(simplices + neighbours met).
+//
+// Throws std::invalid_argument for rows that are not there.
+std::vector<NearRow> nearest_rows(PointView<double> points, const Triangulation& triangulation,
+                                  std::uint32_t of, std::size_t count);
+
 // The facets of a hull.
 struct ConvexHull {
   int dim = 2;

@@ -63,6 +63,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"apps/pack", {"input"}},
     {"apps/render", {"input", "options"}},
     {"apps/replay", {"options", "terminal"}},
+    {"apps/similar", {"input", "options", "terminal"}},
     {"apps/triangulate", {"input", "options", "output", "terminal"}},
     {"apps/verify", {"input", "options", "terminal"}},
     {"apps/view", {"input", "options", "render", "report"}},

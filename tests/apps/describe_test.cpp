@@ -103,11 +103,13 @@ TEST(Completion, OffersWhatOptionsTakeAndNothingElse) {
       {"verify", "a.ply --points p.xyz "},
       {"compose", "p.exr -o a.png "},
       {"generate points", "uniform -o a.ply "},
+      {"generate outline", "lake -o a.poly "},
       {"generate scene", "terrain -n 100 -o a.glb "},
       {"compare compose", "gen:cornell:100 --quick --size 8x8 -o a.html "},
       {"compare partition", "gen:cornell:100 --quick --size 8x8 -o a.html "},
       {"compare schedule", "gen:cornell:100 --quick --size 8x8 -o a.html "},
       {"compare triangulate", "p.xyz --quick -o a.html "},
+      {"similar", "gen:cornell --to gen:cornell "},
       {"replay", "p.json "}};
   int choosing = 0;
   for (const Completed& completed : completed_options(folder)) {

@@ -35,7 +35,7 @@ TEST(Program, EverySubcommandHasHelpWithTwoExamples) {
   for (const std::string name :
        {"info", "generate points", "generate scene", "triangulate", "verify", "render", "pack",
         "compose", "compare compose", "compare triangulate", "compare partition",
-        "compare schedule", "replay"}) {
+        "compare schedule", "replay", "generate outline", "similar"}) {
     const Ran ran = run("delray " + name + " --help", folder.path());
     EXPECT_EQ(ran.exit_code, 0) << name;
     const auto examples = ran.out.find("Examples:");
