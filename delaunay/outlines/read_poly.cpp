@@ -64,7 +64,15 @@ PointCloud read_poly_points(const Input& input) {
   if (table.rows.count == 0) {
     fail(input, "", "its points are in the .node file beside it: name that");
   }
-  return read_points_of(input, table, first_number(input, table));
+  PointCloud points = read_points_of(input, table, first_number(input, table));
+  const TextPlace behind = end_of(table, {}, input);
+  if (!has_more(input, behind)) return points;
+  if (const std::size_t count = find_counted_rows(input, "segments", behind).rows.count;
+      count > 0) {
+    points.warnings.push_back(std::to_string(count) +
+                              " segments left out: triangulate --min-angle 0 keeps them");
+  }
+  return points;
 }
 
 Outline read_outline(const Input& input, const Input* nodes) {
