@@ -123,6 +123,7 @@ HWY_INLINE void find_beyond(DrawnBlock& block) {
   F most = set(0.0F);
   for (int i = 0; i < kPacketRays; i += lanes())
     most = hn::Max(most, load_floats(block.group->packet.far + i));
+  block.came_nearer = false;
   block.beyond = kTie * hn::GetLane(hn::MaxOfLanes(FloatTag(), most));
 }
 
@@ -164,8 +165,7 @@ void draw_lanes(const DrawnTriangle& t, const DrawnLanes& at, bool is_world) {
   const F inside = hn::Min(hn::Abs(e.u), hn::Min(hn::Abs(e.v), hn::Abs(e.w)));
   const shading::LaneMask safe = bits_of(hn::Gt(inside, t.margin), i);
   block.edge = (block.edge & ~now) | (now & ~safe);
-  constexpr std::uint32_t kRefreshAfter = 4;  // costs as much as testing a block
-  if (++block.changes % kRefreshAfter == 0) find_beyond(block);
+  block.came_nearer = true;
 }
 
 template <int kCount>
@@ -263,6 +263,9 @@ void draw_triangles_of(std::span<const GeometryInstance> instances, const RaySpa
                             space.is_world ? kMiss : seen.instance};
       draw_triangle(t, seen, space.is_world, blocks);
     }
+    for (DrawnBlock& block : blocks.blocks) {
+      if (block.came_nearer) find_beyond(block);
+    }
   }
 }
 
@@ -304,7 +307,7 @@ void draw_triangles(std::span<const GeometryInstance> instances, const RaySpace&
 void clear_drawn(RayGroup& group, DrawnBlock& block) {
   block.group = &group;
   block.unsure = block.edge = 0;
-  block.changes = 0;
+  block.came_nearer = false;
   block.beyond = std::numeric_limits<float>::infinity();
   for (float& second : block.second.lane) second = block.beyond;
 }

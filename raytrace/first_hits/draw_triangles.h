@@ -16,7 +16,7 @@ struct DrawnBlock {
   shading::Vectors16 direction;  // in the space of the triangles at hand, unless that is the world
   shading::Floats16 second;      // distance of the second nearest hit
   float beyond = 0;              // further hits make no difference
-  std::uint32_t changes = 0;     // how often a nearer hit was drawn
+  bool came_nearer = false;      // since `beyond` was found
   shading::LaneMask unsure = 0;  // lanes that something met of which nothing is certain
   shading::LaneMask edge = 0;    // lanes whose nearest hit is not safely inside of its triangle
 };
