@@ -132,6 +132,7 @@ bool read_even_triangles(const PlyFile& file, const EvenTriangles& faces, const 
   const std::string_view bytes = file.bytes.read(block.begin, block.bytes, buffer);
   const std::size_t stride = bytes.size() / block.rows;
   const std::size_t each = size_of(faces.list->value), length = size_of(faces.list->length);
+  if (stride < faces.offset + length + 3 * each) return false;  // the first list is shorter
   const bool swap = file.swap();
   const bool plain =
       !swap && (faces.list->value == PlyType::i32 || faces.list->value == PlyType::u32);

@@ -148,5 +148,24 @@ TEST(ReadPly, TextHasNoMoreValuesOrRowsThanTheHeaderSays) {
       std::string::npos);
 }
 
+// The size of the first row is taken for that of all: whoever has three corners would end beyond.
+TEST(ReadPly, ABinaryFirstFaceMayBeShorterThanATriangle) {
+  for (const int first : {0, 1, 2}) {
+    std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" + kXyz +
+                      "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const float p : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F})
+      ply.append(reinterpret_cast<const char*>(&p), sizeof p);
+    for (const int size : {3, first}) {
+      std::string row(1, static_cast<char>(size));
+      for (int k = 0; k < size; ++k) row += std::string{static_cast<char>(k), 0, 0, 0};
+      ply.insert(size == 3 ? ply.size() : ply.size() - 13, row);
+    }
+    std::vector<std::string> warnings;  // of the first one
+    const Scene scene = internal::load_content("/nowhere/a.ply", ply, warnings);
+    EXPECT_EQ(scene.meshes.at(0).triangles, std::vector<glm::uvec3>{glm::uvec3(0, 1, 2)}) << first;
+    EXPECT_EQ(warnings.size(), 1U) << first;
+  }
+}
+
 }  // namespace
 }  // namespace delray::scenes
