@@ -21,6 +21,7 @@
 #include "apps/triangulate_distributed.h"
 #include "apps/triangulate_parts.h"
 #include "apps/triangulate_tiles.h"
+#include "apps/triangulation_json.h"
 #include "comm/agree_on_failure.h"
 #include "delaunay/distributed.h"
 #include "delaunay/simplify_terrain.h"
@@ -231,6 +232,7 @@ int run(Session& session, TriangulateOptions options) {
   warn_of_no_simplices(options, result.size());
   Json statistics = statistics_of(options, rows, result, result.size(), hash(result), seconds);
   add_phases(made.statistics, statistics);
+  statistics["flips"] = flips_json(made.statistics.flips, options.how.dim);
   if (simplified) {
     statistics["options"].update({{"method", "simplify"}, {"max_error", *options.max_error}});
     statistics["result"].update(

@@ -2,6 +2,13 @@
 #include "apps/triangulation_json.h"
 
 namespace delray::apps {
+namespace {
+
+Json lengths_json(const delaunay::ListLengths& lengths) {
+  return {{"lists", lengths.lists}, {"entries", lengths.entries}, {"longest", lengths.longest}};
+}
+
+}  // namespace
 
 Json phases_json(const delaunay::Statistics& statistics) {
   return {{"order", statistics.order},
@@ -9,6 +16,14 @@ Json phases_json(const delaunay::Statistics& statistics) {
           {"subdivide", statistics.subdivide},
           {"legalize", statistics.legalize},
           {"extract", statistics.extract}};
+}
+
+Json flips_json(const delaunay::FlipCounts& flips, int dim) {
+  if (dim == 2) return {{"2-2", flips.two_two}};
+  return {{"2-2", flips.two_two},
+          {"2-3", flips.two_three},
+          {"3-2", flips.three_two},
+          {"4-4", flips.four_four}};
 }
 
 Json synchronization_json(const delaunay::Synchronization& synchronization) {
@@ -21,7 +36,9 @@ Json synchronization_json(const delaunay::Synchronization& synchronization) {
           {"burglaries", synchronization.burglaries},
           {"repaired", synchronization.repaired},
           {"rebuilds", synchronization.rebuilds},
-          {"fragments", synchronization.fragments}};
+          {"fragments", synchronization.fragments},
+          {"journals", lengths_json(synchronization.journals)},
+          {"lock_lists", lengths_json(synchronization.lock_lists)}};
 }
 
 }  // namespace delray::apps

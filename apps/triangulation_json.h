@@ -8,6 +8,8 @@ namespace delray::apps {
 
 // Seconds of the phases.
 Json phases_json(const delaunay::Statistics& statistics);
+// By the simplices that they replace and make: {"2-2"}, in space {"2-2", "2-3", "3-2", "4-4"}.
+Json flips_json(const delaunay::FlipCounts& flips, int dim);
 Json synchronization_json(const delaunay::Synchronization& synchronization);
 
 }  // namespace delray::apps

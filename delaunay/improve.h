@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "delaunay/points.h"
+#include "delaunay/triangulate.h"
 #include "delaunay/triangulation.h"
 #include "delaunay/verify.h"
 
@@ -26,15 +27,6 @@ struct CriterionChoice {
 };
 
 std::span<const CriterionChoice> criteria();
-
-// Flips by how many simplices they replace by how many. In the plane all are of 2 by 2; in space
-// those of 2 by 2 are of a flat side of the hull.
-struct FlipCounts {
-  std::uint64_t two_two = 0, two_three = 0, three_two = 0, four_four = 0;
-
-  std::uint64_t sum() const { return two_two + two_three + three_two + four_four; }
-  bool operator==(const FlipCounts&) const = default;
-};
 
 // The triangulation, and what was done to it.
 struct Improved {

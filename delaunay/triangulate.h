@@ -12,6 +12,21 @@
 
 namespace delray::delaunay {
 
+// Flips by how many simplices they replace by how many. In the plane all are of 2 by 2; in space
+// those of 2 by 2 are of a flat side of the hull.
+struct FlipCounts {
+  std::uint64_t two_two = 0, two_three = 0, three_two = 0, four_four = 0;
+
+  std::uint64_t sum() const { return two_two + two_three + three_two + four_four; }
+  bool operator==(const FlipCounts&) const = default;
+};
+
+// Lists that threads keep while they insert a point, one for each insertion, that which is undone
+// included.
+struct ListLengths {
+  std::uint64_t lists = 0, entries = 0, longest = 0;
+};
+
 // Counts of how threads of the methods with locks met, summed over threads. 0 where a
 // method does not have it.
 struct Synchronization {
@@ -25,6 +40,8 @@ struct Synchronization {
   std::uint64_t repaired = 0;        // simplices that the repair at the end replaced
   std::uint64_t rebuilds = 0;        // repairs that had to start from the points
   std::uint64_t fragments = 0;       // connected sets of simplices made by one thread
+  ListLengths journals;              // links that an undone insertion would restore
+  ListLengths lock_lists;            // simplices that a thread held at the end, new ones among them
 };
 
 // Seconds of the phases, summed over threads; a phase that a method does not have stays 0.
@@ -34,6 +51,7 @@ struct Statistics {
   double subdivide = 0;              // making simplices
   double legalize = 0;               // flips
   double extract = 0;                // from the mesh to the result
+  FlipCounts flips;                  // of methods that flip; those that were undone included
   std::uint64_t dag_nodes = 0;       // simplices that ever were, if the method keeps them
   std::uint64_t dag_node_bytes = 0;  // of each of them, with its share of what few have
   Synchronization synchronization;

@@ -8,6 +8,7 @@
 
 #include "apps/options/list.h"
 #include "apps/triangulate/run_statistics.h"
+#include "apps/triangulation_json.h"
 #include "delaunay/improve.h"
 #include "delaunay/read_mesh.h"
 #include "files/error.h"
@@ -44,14 +45,6 @@ delaunay::Improved improve_points(const TriangulateOptions& options,
         made.given.reason + "; only a triangulation of all its points can be improved");
   }
   return made;
-}
-
-Json flips_json(const delaunay::FlipCounts& flips, int dim) {
-  if (dim == 2) return {{"2-2", flips.two_two}};
-  return {{"2-2", flips.two_two},
-          {"2-3", flips.two_three},
-          {"3-2", flips.three_two},
-          {"4-4", flips.four_four}};
 }
 
 void tell(const TriangulateOptions& options, const delaunay::Improved& made) {

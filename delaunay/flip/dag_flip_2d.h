@@ -9,6 +9,7 @@
 
 #include "delaunay/flip/dag.h"
 #include "delaunay/flip/dag_access.h"
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/predicates/conflict.h"
 #include "delaunay/predicates/orientation.h"
 
@@ -193,6 +194,7 @@ template <class Access>
     grant = flip(triangulation, corner, access, made);
     if (grant == Grant::kRefused) return grant;
     if (grant == Grant::kRetry) continue;
+    count_flip(access, &FlipCounts::two_two);
     suspects.back() = made[0];
     suspects.push_back(made[1]);
   }

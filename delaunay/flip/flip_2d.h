@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/predicates/conflict.h"
 
@@ -82,6 +83,7 @@ int legalize(Mesh<2>& mesh, std::span<const glm::dvec2> points, Access& access,
     if (!conflict(mesh, points, across, points[mesh.vertex(corner)])) continue;
     suspects.push_back(flip(mesh, corner));
     suspects.push_back(corner);
+    count_flip(access, &FlipCounts::two_two);
     ++flips;
   }
   return flips;

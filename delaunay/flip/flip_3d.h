@@ -21,6 +21,7 @@
 
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/insertion/orientation_3d.h"
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/predicates/conflict.h"
 
@@ -321,6 +322,7 @@ Grant Flips3d<Simplices, Access>::flip_2_3(const Turned& near, const Turned& far
   for (unsigned k = 0; k < 3; ++k) {
     access_.link(far.across(near.vertices[k]), corner_of(children[k], 3));
   }
+  count_flip(access_, &FlipCounts::two_three);
   replace_suspect(children);
   access_.retire(near.simplex, children);
   access_.retire(far.simplex, children);
@@ -348,6 +350,7 @@ Grant Flips3d<Simplices, Access>::flip_3_2(const Turned& near, const Turned& far
     access_.link(third.across(near.vertices[k]), corner_of(children[k], 2));
     access_.link(far.across(near.vertices[k]), corner_of(children[k], 3));
   }
+  count_flip(access_, &FlipCounts::three_two);
   replace_suspect(children);
   forget(third.simplex, near.vertices[3]);
   access_.retire(near.simplex, children);
@@ -383,6 +386,11 @@ Grant Flips3d<Simplices, Access>::flip_4_4(const Turned& near, const Turned& far
     access_.link(far.across(near.vertices[k]), corner_of(children[k], 3));
     access_.link(other_far.outer[k], corner_of(others[k], 2));
   }
+  const auto has_ghost = [](const Turned& turned) {
+    return std::ranges::find(turned.vertices, kInfiniteVertex) != turned.vertices.end();
+  };
+  const bool is_flat = has_ghost(near) || has_ghost(far) || has_ghost(other_near);
+  count_flip(access_, is_flat ? &FlipCounts::two_two : &FlipCounts::four_four);
   replace_suspect(children);
   forget(other_near.simplex, near.vertices[3]);
   for (unsigned k = 0; k < 2; ++k) suspects_.push_back(corner_of(others[k], 2));

@@ -80,6 +80,8 @@ class Hierarchy {
       if (k < highest_) note_star(k);
     }
   }
+  // Of the whole triangulation, not of coarser ones.
+  const FlipCounts& flips() const { return levels_[0].access.flips(); }
   Mesh<2> take() {
     levels_[0].mesh.shrink(levels_[0].access.used());
     return std::move(levels_[0].mesh);

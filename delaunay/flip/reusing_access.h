@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "delaunay/flip/dag_access.h"
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/mesh/mesh.h"
 
 namespace delray::delaunay::internal {
 
 // Grants everything, uses the slots of retired tetrahedra again and lets the mesh grow.
-class ReusingAccess {
+class ReusingAccess : public FlipCounter {
  public:
   static constexpr bool kMayRetry = false;
 

@@ -23,6 +23,7 @@
 #include "delaunay/history/request_queue.h"
 #include "delaunay/history/sole_dag_access.h"
 #include "delaunay/insertion/insertion_phases.h"
+#include "delaunay/mesh/add_counts.h"
 #include "parallel/team.h"
 
 namespace delray::delaunay::internal {
@@ -83,6 +84,8 @@ class BatchInsertion {
       phases.finish();
     });
   }
+
+  const FlipCounts& flips() const { return access_.flips(); }
 
  private:
   NodeNumber locate(VertexNumber vertex) const {
@@ -185,6 +188,7 @@ Result insert_in_batches(PointView<double> points, const Options& options) {
     } else {
       insertion.insert_with_team();
     }
+    if (options.statistics) add(run.statistics.flips, insertion.flips());
   }
   return run.finish();
 }

@@ -10,6 +10,8 @@
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
 #include "delaunay/history/thread_waits.h"
+#include "delaunay/mesh/add_counts.h"
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/triangulate.h"
 #include "parallel/team.h"
 
@@ -24,7 +26,7 @@ namespace delray::delaunay::internal {
 // what is broken into is a triangulation; but whoever has waited may find it changed, be it robbed
 // or a burglar itself, and is told so. kCounted: whether to count.
 template <int D, bool kCounted>
-class BurglarLocks {
+class BurglarLocks : public FlipCounter {
  public:
   static constexpr bool kMayRetry = true;
 
@@ -66,6 +68,7 @@ class BurglarLocks {
   }
 
   void commit() {
+    if (kCounted) add_list(counts_.lock_lists, held_.size());
     held_.commit();
     if (robs_) robbed_.assign(robbed_.size(), false);
     robs_ = false;

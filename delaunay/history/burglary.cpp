@@ -67,7 +67,9 @@ Result insert_all_points(PointView<double> points, const Options& options) {
       },
       [&](const Burglar& burglar) {
         robbed |= burglar.access.has_robbed();
-        if (kCounted) add(run.statistics.synchronization, burglar.access.counts());
+        if (!kCounted) return;
+        add(run.statistics.synchronization, burglar.access.counts());
+        add(run.statistics.flips, burglar.access.flips());
       });
   // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
   // without a burglary; with one, all that came after it may have built on what it left.

@@ -11,6 +11,7 @@
 #include "delaunay/flip/dag_flip_2d.h"
 #include "delaunay/history/current_points.h"
 #include "delaunay/history/node_cache.h"
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/triangulate.h"
 #include "parallel/team.h"
 
@@ -27,7 +28,7 @@ namespace delray::delaunay::internal {
 // whose waiting would close a circle ignores the point of the one that it would wait for, until its
 // own commit(), for the reasons of BurglarLocks. kCounted: whether to count.
 template <bool kCounted>
-class CircleAccess {
+class CircleAccess : public FlipCounter {
  public:
   static constexpr bool kMayRetry = true;
 

@@ -52,7 +52,9 @@ Result insert_all_points(PointView<double> points, const Options& options) {
       },
       [&](const CircleAccess<kCounted>& access) {
         robbed |= access.has_robbed();
-        if (kCounted) add(run.statistics.synchronization, access.counts());
+        if (!kCounted) return;
+        add(run.statistics.synchronization, access.counts());
+        add(run.statistics.flips, access.flips());
       });
   // As in the burglary method.
   const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;

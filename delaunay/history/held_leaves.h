@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <thread>
 #include <vector>
@@ -23,6 +24,8 @@ class HeldLeaves {
       : dag_(dag), owner_(thread + 1), cache_(dag, thread) {}
 
   std::uint32_t owner() const { return owner_; }
+  // How many it holds, new ones among them.
+  std::size_t size() const { return held_.size() + created_.size(); }
 
   // As Dag::try_lock(), and `record` is the node's.
   std::uint32_t try_lock(NodeNumber node, RecordNumber& record) {

@@ -11,6 +11,7 @@
 #include "delaunay/history/sole_dag_access.h"
 #include "delaunay/insertion/insertion_phases.h"
 #include "delaunay/insertion/point_supply.h"
+#include "delaunay/mesh/add_counts.h"
 
 namespace delray::delaunay::internal {
 
@@ -69,6 +70,7 @@ PointSupply insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulatio
     others.set(part, end, run.end(part));
   }
   phases.finish();
+  if (run.options.statistics) add(run.statistics.flips, access.flips());
   return others;
 }
 

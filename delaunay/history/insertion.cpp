@@ -27,6 +27,7 @@
 #include "delaunay/insertion/insertion_phases.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/mesh/access.h"
+#include "delaunay/mesh/add_counts.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/mesh/stopwatch.h"
@@ -58,6 +59,7 @@ class WalkedMesh<2> {
     internal::subdivide(mesh_, simplex, vertex, access_, suspects_);
   }
   void legalize() { internal::legalize(mesh_, points_, access_, suspects_); }
+  const FlipCounts& flips() const { return access_.flips(); }
   Mesh<2> take() {
     mesh_.shrink(access_.used());
     return std::move(mesh_);
@@ -88,6 +90,7 @@ class WalkedMesh<3> {
   }
   void subdivide(VertexNumber vertex, SimplexNumber simplex) { flips_.subdivide(simplex, vertex); }
   void legalize() { flips_.legalize(); }
+  const FlipCounts& flips() const { return access_.flips(); }
   Mesh<3> take() {
     mesh_.shrink(access_.used());
     return std::move(mesh_);
@@ -118,6 +121,7 @@ Result insert_descending(PointView<double> input, const Options& options) {
       insert_from_root(run, triangulation, vertex, access, suspects, phases);
     }
     phases.finish();
+    if (options.statistics) add(run.statistics.flips, access.flips());
   }
   return run.finish();
 }

@@ -14,6 +14,8 @@
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
 #include "delaunay/history/thread_waits.h"
+#include "delaunay/mesh/add_counts.h"
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/triangulate.h"
 #include "parallel/team.h"
 
@@ -33,7 +35,7 @@ struct Blocking {
 // Simplices stay locked until commit() or rollback(), and no other thread ever sees what is undone.
 // kCounted: whether to count.
 template <int D, bool kCounted>
-class NodeLocks {
+class NodeLocks : public FlipCounter {
  public:
   static constexpr bool kMayRetry = false;
 
@@ -92,11 +94,13 @@ class NodeLocks {
   }
 
   void commit() {
+    count_lists();
     held_.commit();
     journal_.clear();
   }
   void rollback() {
     if (kCounted && !journal_.empty()) ++counts_.rollbacks;
+    count_lists();
     for (std::size_t i = journal_.size(); i-- > 0;) {
       dag_.set_neighbour(journal_[i].corner, journal_[i].neighbour);
     }
@@ -118,6 +122,11 @@ class NodeLocks {
   struct Link {
     CornerNumber corner, neighbour;
   };
+  void count_lists() {
+    if (!kCounted) return;
+    add_list(counts_.journals, journal_.size());
+    add_list(counts_.lock_lists, held_.size());
+  }
   // Returns as HeldLeaves::wait().
   std::uint32_t wait_by_priority(NodeNumber node, RecordNumber record) {
     const std::uint64_t own = blocking_.priorities[thread_].load(std::memory_order_relaxed);

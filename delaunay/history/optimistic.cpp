@@ -72,7 +72,9 @@ Result insert_all_points(PointView<double> points, const Options& options) {
         locker.access.commit();
       },
       [&](const Locker& locker) {
-        if (kCounted) add(run.statistics.synchronization, locker.access.counts());
+        if (!kCounted) return;
+        add(run.statistics.synchronization, locker.access.counts());
+        add(run.statistics.flips, locker.access.flips());
       });
   return run.finish();
 }

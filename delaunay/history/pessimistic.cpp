@@ -16,6 +16,7 @@
 #include "delaunay/history/insert_in_leaf.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/history/sole_dag_access.h"
+#include "delaunay/mesh/add_counts.h"
 #include "parallel/team.h"
 
 namespace delray::delaunay::internal {
@@ -46,7 +47,9 @@ Result insert_all_points(PointView<double> points, const Options& options) {
         phases.located();
         insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
       },
-      [](const SoleDagAccess<D>&) {});
+      [&](const SoleDagAccess<D>& access) {
+        if (options.statistics) add(run.statistics.flips, access.flips());
+      });
   if (options.statistics) run.statistics.synchronization.lock_calls = entered;
   return run.finish();
 }

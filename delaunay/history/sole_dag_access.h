@@ -8,12 +8,13 @@
 #include "delaunay/flip/dag.h"
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/node_cache.h"
+#include "delaunay/mesh/flip_counter.h"
 
 namespace delray::delaunay::internal {
 
 // Grants everything. Others may go down the graph meanwhile.
 template <int D>
-class SoleDagAccess {
+class SoleDagAccess : public FlipCounter {
  public:
   static constexpr bool kMayRetry = false;
 

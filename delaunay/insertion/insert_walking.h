@@ -62,6 +62,9 @@ Result insert_walking(PointView<double> input, const Options& options) {
     mesh.legalize();
     if (timed) seconds.legalize += watch.lap();
   }
+  if constexpr (requires { mesh.flips(); }) {
+    if (timed) seconds.flips = mesh.flips();
+  }
   watch.lap();
   points = {};
   Result result = extract(mesh.take(), rows);

@@ -1,6 +1,7 @@
 // Access to a mesh during an insertion: the policy of a thread that is alone with it.
 #pragma once
 
+#include "delaunay/mesh/flip_counter.h"
 #include "delaunay/mesh/mesh.h"
 
 namespace delray::delaunay::internal {
@@ -9,7 +10,7 @@ namespace delray::delaunay::internal {
 //
 // Other policies lock or refuse. A kernel acquires every simplex that it will write before its
 // first write; if that is refused it returns at once, and the driver rolls back and tries again.
-class SoleAccess {
+class SoleAccess : public FlipCounter {
  public:
   // Slots from `used` on are free.
   explicit SoleAccess(SimplexNumber used) : used_(used) {}

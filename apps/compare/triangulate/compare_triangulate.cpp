@@ -11,6 +11,8 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -38,6 +40,12 @@ struct Repetitions {
   double seconds;
 };
 constexpr Repetitions kUsual = {3, 9, 120}, kQuick = {1, 3, 25};
+// A run that is predicted to take longer than `run`, or one that is not quick where all have taken
+// as long as `all`, is left out, unless its method was asked for by name.
+struct Limits {
+  double run, quick, all;  // seconds
+};
+constexpr Limits kUsualLimits = {60, 5, 3600}, kQuickLimits = {5, 0.5, 130};
 // The method whose splits and deadlock strategies are compared, as in the report.
 constexpr std::string_view kOfSplits = "optimistic";
 // Capacities of queues that are compared, in points, as in the report.
@@ -118,6 +126,27 @@ std::vector<std::uint32_t> shuffled_rows(std::size_t points, std::uint64_t seed)
   return rows;
 }
 
+// The time for so many points, if it goes on growing as over the last two rows, at least with their
+// number and at most with its cube; as its square after one row alone. `rows` are of fewer points,
+// ascending. By the least times, which what else the machine did has in them least.
+std::optional<double> predicted_seconds(const std::vector<const ComparedTriangulation*>& rows,
+                                        std::size_t points) {
+  if (rows.empty()) return std::nullopt;
+  const auto log_ratio = [](auto a, auto b) {
+    return std::log(static_cast<double>(a) / static_cast<double>(b));
+  };
+  const ComparedTriangulation& last = *rows.back();
+  double exponent = 2;
+  if (rows.size() > 1) {
+    const ComparedTriangulation& other = *rows[rows.size() - 2];
+    exponent = std::clamp(
+        log_ratio(last.seconds.least, other.seconds.least) / log_ratio(last.points, other.points),
+        1.0, 3.0);
+  }
+  return last.seconds.least *
+         std::pow(static_cast<double>(points) / static_cast<double>(last.points), exponent);
+}
+
 class TriangulationRuns {
  public:
   TriangulationRuns(const TriangulateRequest& request, const delaunay::PointCloud& points, int dim,
@@ -165,22 +194,51 @@ class TriangulationRuns {
   void compare(const delaunay::PointCloud& points, const Repetitions& often, double seconds) {
     const double share = seconds / static_cast<double>(ways_.size());
     std::vector<std::vector<double>> times(ways_.size());
-    const std::size_t first = result_.rows.size();
+    std::vector<std::size_t> row_of(ways_.size());
     for (int round = 0; round < often.most; ++round) {
       for (std::size_t i = 0; i < ways_.size(); ++i) {
         std::vector<double>& own = times[i];
+        if (round == 0 && leaves_out(i, points.size())) {
+          own.push_back(std::numeric_limits<double>::infinity());
+          steps_.done(points.size());
+        }
         const double spent = std::accumulate(own.begin(), own.end(), 0.0);
-        if (round >= often.least && spent + spent / round > share) {
+        const bool is_over = round >= often.least && spent + spent / round > share;
+        if (is_over || std::isinf(spent)) {
           steps_.done(points.size());
           continue;
         }
         std::optional<ComparedTriangulation> row;
         if (round == 0) row = count(points, ways_[i]);
         own.push_back(time(points, ways_[i]));
-        if (row) result_.rows.push_back(std::move(*row));
-        result_.rows[first + i].seconds = spread_of(own);
+        if (row) {
+          row_of[i] = result_.rows.size();
+          result_.rows.push_back(std::move(*row));
+        }
+        result_.rows[row_of[i]].seconds = spread_of(own);
       }
     }
+  }
+
+  // Whether another run would take too long, by those of fewer points; what is left out is told.
+  bool leaves_out(std::size_t way, std::size_t points) {
+    if (!request_.methods.empty()) return false;
+    const Limits& limits = request_.quick ? kQuickLimits : kUsualLimits;
+    const std::string name = fmt::format("{}, {} threads", name_of(ways_[way]), ways_[way].threads);
+    std::vector<const ComparedTriangulation*> before;
+    for (const ComparedTriangulation& row : result_.rows) {
+      if (row.how.threads == ways_[way].threads && name_of(row.how) == name_of(ways_[way]))
+        before.push_back(&row);
+    }
+    const std::optional<double> seconds = predicted_seconds(before, points);
+    if (!seconds) return false;
+    constexpr double kRuns = 2;  // at least: one counts, one is timed
+    const bool is_late = *seconds > limits.quick && spent_ + kRuns * *seconds > limits.all;
+    if (*seconds <= limits.run && !is_late) return false;
+    result_.left_out.push_back(
+        fmt::format("{} ({} points: {:.0f} s predicted)", name, points, *seconds));
+    spdlog::info("left out, unless --method names it: {}", result_.left_out.back());
+    return true;
   }
 
   delaunay::Result triangulate(const delaunay::PointCloud& points, delaunay::Options how) {
@@ -195,6 +253,7 @@ class TriangulationRuns {
     Stopwatch watch;
     const delaunay::Result result = triangulate(points, how);
     const double seconds = watch.lap();
+    spent_ += seconds;
     steps_.done(points.size());
     return seconds;
   }
@@ -206,7 +265,9 @@ class TriangulationRuns {
     delaunay::Options counting = how;
     counting.statistics = true;
     counting.created_by = true;
+    Stopwatch watch;
     const auto [made, statistics, makers] = triangulate(points, counting);
+    spent_ += watch.lap();
     row.statistics = statistics;
     row.distinct = made.distinct;
     row.simplices = made.size();
@@ -237,6 +298,7 @@ class TriangulationRuns {
   const delaunay::PointCloud& points_;
   Steps steps_;
   std::vector<delaunay::Options> ways_;
+  double spent_ = 0;  // seconds in all runs
   TriangulateComparison result_;
 };
 

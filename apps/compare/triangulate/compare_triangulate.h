@@ -65,6 +65,7 @@ struct TriangulateComparison {
   int shown_threads = 1;                    // of the pictures, and where splits are compared
   std::vector<ComparedTriangulation> rows;  // by points, then as in the table of methods
   std::vector<PictureOfMakers> pictures;    // of most points, if a page is asked for
+  std::vector<std::string> left_out;        // ways that would have taken too long, with why
   bool unfinished = false;                  // told to stop before the end
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/compare/compare_commands.h"
+#include "apps/compare/triangulate/algorithms_report.h"
 #include "apps/compare/triangulate/compare_distributed.h"
 #include "apps/compare/triangulate/compare_triangulate.h"
 #include "apps/compare/triangulate/distributed_figures.h"
@@ -82,6 +83,32 @@ int run_distributed(Session& session, const TriangulateRequest& request,
        comparison->unfinished, [&] { return distributed_report(session, request, *comparison); }});
 }
 
+// More points are simulated where somebody asks for ranks.
+constexpr std::size_t kMostForRanks = 20'000;
+
+// Whether the page also shows how the methods that ranks have would do.
+bool wants_simulated(const ComparedInput& input, std::size_t points) {
+  const bool all = input.request.methods.empty() && !input.request.output.empty();
+  if (!all || input.comparison.unfinished) return false;
+  if (points > kMostForRanks)
+    spdlog::info("ranks are simulated with up to {} points, or with --ranks", kMostForRanks);
+  return points <= kMostForRanks;
+}
+
+DistributedComparison simulated_ranks(TriangulateRequest request,
+                                      const delaunay::PointCloud& points, int dim,
+                                      parallel::Progress& progress) {
+  request.quick = true;
+  request.ranks = shown_elements();
+  request.ranks.insert(request.ranks.begin(), 1);
+  request.networks = {*comm::find_network("hdr-infiniband")};
+  try {
+    return compare_distributed(request, points, dim, progress);
+  } catch (const parallel::Interrupted&) {
+    return {};
+  }
+}
+
 int run(Session& session, TriangulateRequest request) {
   if (request.list) {
     list_methods();
@@ -102,7 +129,7 @@ int run(Session& session, TriangulateRequest request) {
   const auto inputs = std::make_shared<std::vector<ComparedInput>>();
   std::vector<delaunay::PointCloud> points;
   for (const std::string& path : request.each ? request.input.paths : std::vector{std::string()}) {
-    inputs->push_back({request, {}});
+    inputs->push_back({request, {}, {}});
     PointInput& input = inputs->back().request.input;
     if (request.each) {
       input.paths = {path};
@@ -120,6 +147,8 @@ int run(Session& session, TriangulateRequest request) {
     if (request.each) spdlog::info("{}", one.request.input.path);
     const int dim = one.comparison.dim;
     one.comparison = compare_triangulate(one.request, points[i], dim, session.progress);
+    if (i == 0 && wants_simulated(one, points[0].size()))
+      one.simulated = simulated_ranks(one.request, points[0], dim, session.progress);
     if (one.comparison.unfinished) inputs->resize(i + 1);
   }
   bar.end();

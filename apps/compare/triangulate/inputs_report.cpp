@@ -99,7 +99,8 @@ Json inputs_statistics(std::span<const ComparedInput> inputs) {
 }
 
 report::Page inputs_page(const Session& session, std::span<const ComparedInput> inputs) {
-  report::Page page = triangulate_page(session, inputs[0].request, inputs[0].comparison);
+  report::Page page =
+      triangulate_page(session, inputs[0].request, inputs[0].comparison, inputs[0].simulated);
   if (inputs.size() == 1) return page;
   page.title += fmt::format(", and {} more inputs", inputs.size() - 1);
   page.tabs.insert(page.tabs.begin(), {"Inputs", inputs_tab(inputs)});

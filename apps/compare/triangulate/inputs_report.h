@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/compare/triangulate/compare_distributed.h"
 #include "apps/compare/triangulate/compare_triangulate.h"
 #include "apps/report/page.h"
 #include "apps/session.h"
@@ -15,6 +16,7 @@ namespace delray::apps {
 struct ComparedInput {
   TriangulateRequest request;  // of this input alone
   TriangulateComparison comparison;
+  DistributedComparison simulated;  // ranks of the methods for these, if any
 };
 
 // All of the following REQUIRE at least one input; with one they are those of a single comparison.

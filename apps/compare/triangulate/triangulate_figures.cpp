@@ -31,6 +31,7 @@ Json statistics_of(const TriangulateComparison& comparison, const ComparedTriang
           {"hull_facets", row.hull_facets},
           {"hash", row.hash},
           {"sync", sync},
+          {"flips", flips_json(phases.flips, how.dim)},
           {"simplices_by_thread", row.simplices_by_thread},
           {"dag_nodes", phases.dag_nodes},
           {"dag_node_bytes", phases.dag_node_bytes},
@@ -68,6 +69,7 @@ Json triangulate_statistics(const TriangulateRequest& request,
             {"seed", request.seed},
             {"quick", request.quick}}},
           {"hardware_threads", comparison.cores},
+          {"left_out", comparison.left_out},
           {"unfinished", comparison.unfinished},
           {"rows", std::move(rows)}};
 }

@@ -10,6 +10,8 @@
 #include <optional>
 #include <set>
 
+#include "apps/compare/triangulate/algorithms_report.h"
+#include "apps/compare/triangulate/flips_report.h"
 #include "apps/compare/triangulate/scaling_laws.h"
 #include "apps/compare/triangulate/triangulate_answer.h"
 #include "apps/compare/triangulate/triangulate_figures.h"
@@ -94,6 +96,17 @@ Html over_points(const Rows& rows, const Shown& shown, const TriangulationPoint&
   return chart_of(rows, shown, "points", point);
 }
 
+// What there are no numbers of; empty where there are all.
+Html left_out(const TriangulateComparison& comparison) {
+  std::string names;
+  for (const std::string& name : comparison.left_out) names += (names.empty() ? "" : "; ") + name;
+  if (names.empty()) return {};
+  return paragraph(
+      "Left out, as fewer points took too long (--method names what is to be run "
+      "nevertheless): " +
+      names + ".");
+}
+
 Html times(const TriangulateComparison& comparison) {
   const Rows rows = rows_of(comparison.rows, is_plain_row);
   const std::size_t points = most_points(rows);
@@ -113,7 +126,8 @@ Html times(const TriangulateComparison& comparison) {
              "than "
              "six runs all of their spread. Times are from points in memory to simplices in "
              "memory, sorting and extraction included. "
-             "insertion always works with one thread.");
+             "insertion always works with one thread.") +
+         left_out(comparison);
 }
 
 Html speed_ups(const TriangulateComparison& comparison) {
@@ -290,7 +304,8 @@ Html locks(const TriangulateComparison& comparison) {
              "another thread held. Of the pessimistic method MA is how often threads entered "
              "the critical section. Rollbacks are insertions that were undone and tried "
              "again; repaired and rebuilds are what the burglary and circumcircle methods "
-             "do at the end, where a burglary may have left something wrong.");
+             "do at the end, where a burglary may have left something wrong.") +
+         list_lengths(comparison);
 }
 
 // The simplices in the colours of their threads; empty without pictures.
@@ -448,15 +463,18 @@ report::Page page_of_triangulations(const Session& session, const TriangulateReq
 }
 
 report::Page triangulate_page(const Session& session, const TriangulateRequest& request,
-                              const TriangulateComparison& comparison) {
+                              const TriangulateComparison& comparison,
+                              const DistributedComparison& simulated) {
   Page result = page_of_triangulations(
       session, request, fmt::format(", {} points in {}D", comparison.points, comparison.dim));
   result.unfinished = comparison.unfinished;
   result.answer = triangulate_answer(comparison);
   result.tabs.push_back({"Times", times(comparison)});
   result.tabs.push_back({"Speed-up", speed_ups(comparison)});
+  result.tabs.push_back({"Algorithms", algorithms(comparison, simulated)});
   result.tabs.push_back({"Fragments", fragments(comparison)});
   result.tabs.push_back({"Phases", phases(comparison)});
+  result.tabs.push_back({"Flips", flips(comparison)});
   result.tabs.push_back({"Locks", locks(comparison)});
   result.tabs.push_back({"History", history(comparison)});
   result.tabs.push_back({"All figures", all_rows(comparison)});

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "apps/compare/triangulate/compare_distributed.h"
 #include "apps/compare/triangulate/compare_triangulate.h"
 #include "apps/report/page.h"
 #include "apps/session.h"
@@ -14,6 +15,7 @@ report::Page page_of_triangulations(const Session& session, const TriangulateReq
                                     const std::string& what);
 
 report::Page triangulate_page(const Session& session, const TriangulateRequest& request,
-                              const TriangulateComparison& comparison);
+                              const TriangulateComparison& comparison,
+                              const DistributedComparison& simulated);
 
 }  // namespace delray::apps

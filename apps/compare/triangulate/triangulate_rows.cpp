@@ -24,7 +24,7 @@ std::size_t most_points(const Rows& rows) {
   };
   std::size_t most = rows.front().points;
   for (const std::size_t points : sizes_of(rows))
-    if (count(points) == count(rows.front().points)) most = points;
+    if (4 * count(points) >= 3 * count(rows.front().points)) most = points;
   return most;
 }
 Rows rows_of(const Rows& rows, const std::function<bool(const Row&)>& wanted) {

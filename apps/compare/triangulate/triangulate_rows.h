@@ -13,7 +13,8 @@ using ComparedTriangulations = std::vector<ComparedTriangulation>;
 
 // Numbers of points, each once, as they come.
 std::vector<std::size_t> sizes_of(const ComparedTriangulations& rows);
-// The most points for which there are all rows that there are for the fewest. REQUIRES:
+// The most points for which there are three quarters of the rows that there are for the fewest:
+// others were not finished, or left out as too slow. REQUIRES:
 // !rows.empty().
 std::size_t most_points(const ComparedTriangulations& rows);
 ComparedTriangulations rows_of(const ComparedTriangulations& rows,
