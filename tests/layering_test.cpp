@@ -86,7 +86,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/pieces", {"files"}},
     {"delaunay/outlines", {"files", "mesh"}},
     {"delaunay/refinement", {"flip", "insertion", "mesh", "predicates"}},
-    {"delaunay/points", {"cavity", "flip", "insertion", "mesh", "predicates"}},
+    {"delaunay/points", {"cavity", "flip", "insertion", "mesh", "order", "predicates"}},
     {"delaunay/queries", {"mesh"}},
     {"delaunay/tiles", {"mesh"}},
     {"delaunay/raster", {"mesh", "natural_neighbours", "tiles"}},
