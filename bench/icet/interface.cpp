@@ -29,7 +29,7 @@ struct Options {
   bool tiles = false;  // 2 x 2, shown by the first four processes
   bool draws = false;  // by a callback instead of images that are there
   bool interlaces = true;
-  double skew = 0;     // milliseconds by which each process begins after the one before, computing
+  double skew = 0;  // milliseconds by which each process begins after the one before, computing
 };
 
 // Functions of one of the two, looked up by name.
@@ -147,7 +147,8 @@ class Side {
   Side(const Side&) = delete;
   Side& operator=(const Side&) = delete;
 
-  // Seconds from the moment the last begins until the last is done; `composite` by the library's clock.
+  // Seconds from the moment the last begins until the last is done; `composite` by the library's
+  // clock.
   void run(const Picture& picture) {
     ICET(library_, icetSetContext)(context_);
     const IceTFloat background[4] = {0, 0, 0, 0};
