@@ -7,11 +7,10 @@
 #include "composite/layers/interlaced.h"
 
 #include <algorithm>
-#include <cassert>
-#include <cstring>
 #include <utility>
 #include <vector>
 
+#include "composite/layers/bundle.h"
 #include "composite/schemes/range.h"
 
 namespace delray::composite {
@@ -20,8 +19,6 @@ namespace {
 // Pieces of one rank's pixels; as tiles.cpp.
 constexpr std::uint64_t kPiecesOfSet = 8;
 constexpr std::uint64_t kFewestPixelsOfPiece = 4096;
-
-constexpr std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
 
 class InterlacedLayer final : public Layer {
  public:
@@ -46,23 +43,8 @@ class InterlacedLayer final : public Layer {
 
   comm::Buffer encode(PixelRange range) override {
     std::vector<comm::Buffer> messages;
-    std::size_t bytes = 0, counted = 0;
-    for_each_piece(range, [&](PixelRange real) {
-      messages.push_back(layer_->encode(real));
-      bytes += sizeof(std::uint64_t) + padded(messages.back().size());
-      counted += sizeof(std::uint64_t) + padded(messages.back().counted_bytes());
-    });
-    comm::Buffer result(bytes);
-    std::byte* to = result.data();
-    for (const comm::Buffer& message : messages) {
-      const std::uint64_t size = message.size();
-      std::memcpy(to, &size, sizeof size);
-      to += sizeof size;
-      if (size > 0) std::memcpy(to, message.data(), size);
-      std::memset(to + size, 0, padded(size) - size);
-      to += padded(size);
-    }
-    return comm::Buffer::standing_for(counted, std::move(result));
+    for_each_piece(range, [&](PixelRange real) { messages.push_back(layer_->encode(real)); });
+    return bundle(messages);
   }
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override {
     std::uint64_t composited = 0;
@@ -113,15 +95,8 @@ class InterlacedLayer final : public Layer {
   }
   template <class F>
   void for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f) const {
-    const std::byte* from = pixels.data();
-    for_each_piece(range, [&](PixelRange real) {
-      std::uint64_t size = 0;
-      std::memcpy(&size, from, sizeof size);
-      from += sizeof size;
-      f(real, comm::Buffer::of(std::span<const std::byte>(from, size)));
-      from += padded(size);
-    });
-    assert(from == pixels.data() + pixels.size());
+    Unbundling messages(pixels);
+    for_each_piece(range, [&](PixelRange real) { f(real, messages.next()); });
   }
 
   std::unique_ptr<Layer> layer_;

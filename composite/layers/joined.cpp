@@ -3,18 +3,12 @@
 #include "composite/joined.h"
 
 #include <algorithm>
-#include <cstring>
-#include <span>
+#include <utility>
 
-#include "comm/bad_message.h"
+#include "composite/layers/bundle.h"
 #include "composite/schemes/range.h"
 
 namespace delray::composite {
-namespace {
-
-constexpr std::size_t padded_to_8(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
-
-}  // namespace
 
 JoinedLayer::JoinedLayer(std::vector<Part> parts, int layers, MakeEmpty make_empty)
     : parts_(std::move(parts)), begins_(1), format_(layers), make_empty_(std::move(make_empty)) {
@@ -38,39 +32,20 @@ void JoinedLayer::for_each_piece(PixelRange range, F&& f) const {
 // Calls f(part, pixels in the part, message of them) for what encode(range) gave.
 template <class F>
 void JoinedLayer::for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f) {
-  std::size_t at = 0;
+  Unbundling messages(pixels);
   for_each_piece(range, [&](std::size_t part, PixelRange piece) {
     if (piece.size() == range.size()) return f(part, piece, pixels);
-    std::uint64_t size = 0;
-    comm::check_message(at + sizeof size <= pixels.size());
-    std::memcpy(&size, pixels.data() + at, sizeof size);
-    at += sizeof size;
-    comm::check_message(size <= pixels.size() - at);
-    f(part, piece, comm::Buffer::of(std::span<const std::byte>(pixels.data() + at, size)));
-    at += padded_to_8(size);
+    f(part, piece, messages.next());
   });
 }
 
 comm::Buffer JoinedLayer::encode(PixelRange range) {
   std::vector<comm::Buffer> messages;
-  std::size_t bytes = 0;
   for_each_piece(range, [&](std::size_t part, PixelRange piece) {
     messages.push_back(layer(part) == nullptr ? comm::Buffer() : layer(part)->encode(piece));
-    bytes += sizeof(std::uint64_t) + padded_to_8(messages.back().size());
   });
   if (messages.empty()) return {};
-  if (messages.size() == 1) return std::move(messages.front());
-  comm::Buffer result(bytes);
-  std::byte* to = result.data();
-  for (const comm::Buffer& message : messages) {
-    const std::uint64_t size = message.size();
-    std::memcpy(to, &size, sizeof size);
-    to += sizeof size;
-    if (size > 0) std::memcpy(to, message.data(), size);
-    std::memset(to + size, 0, padded_to_8(size) - size);
-    to += padded_to_8(size);
-  }
-  return result;
+  return messages.size() == 1 ? std::move(messages.front()) : bundle(messages);
 }
 
 std::uint64_t JoinedLayer::merge(PixelRange range, const comm::Buffer& pixels, Side from) {
