@@ -14,6 +14,7 @@
 #include "apps/input/coloured_points.h"
 #include "apps/input/geographic.h"
 #include "apps/input/point_shape.h"
+#include "apps/input/relief.h"
 #include "apps/input/show_as.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"

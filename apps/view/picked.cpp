@@ -81,9 +81,10 @@ std::size_t nearest_row(const delaunay::PointCloud& points, const glm::dvec3& pl
 void add_point(const delaunay::PointCloud& points, const glm::dvec3& corner, Json& facts) {
   const std::size_t row = nearest_row(points, corner);
   facts.push_back({"nearest point", "row " + std::to_string(row)});
-  for (const PointAttribute& attribute : point_attributes())
+  for (const PointAttribute& attribute : point_attributes()) {
     if (attribute.exists(points))
       facts.push_back({std::string(attribute.name), attribute.text(points, row)});
+  }
 }
 
 std::uint32_t nearest_corner(const glm::uvec3& corners, const glm::vec3& weights) {

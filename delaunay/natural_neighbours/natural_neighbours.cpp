@@ -8,7 +8,7 @@
 // Degenerate: a place at a vertex has that neighbour alone. On an edge of the hull shares are
 // lengths, on a face of a 3D hull they are areas within its plane; which of these holds is decided
 // by exact predicates.
-#include "delaunay/natural_neighbours.h"
+#include "delaunay/interpolate.h"
 
 #include <algorithm>
 #include <array>

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "delaunay/mesh/edge_pairs.h"
-#include "delaunay/natural_neighbours.h"
+#include "delaunay/interpolate.h"
 #include "delaunay/predicates/circumcentres.h"
 
 namespace delray::delaunay::internal {

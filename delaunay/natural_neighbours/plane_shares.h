@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "delaunay/natural_neighbours.h"
+#include "delaunay/interpolate.h"
 
 namespace delray::delaunay::internal {
 

@@ -28,9 +28,9 @@ struct HeightLattice {
   std::size_t across() const { return side + 1; }
   bool is_above(std::size_t i) const { return heights[i] > 0; }
   glm::dvec2 place(std::size_t i) const {
+    const std::size_t column = i % across(), row = i / across();
     const auto spacing = 1 / static_cast<double>(side);
-    return spacing *
-           glm::dvec2(static_cast<double>(i % across()), static_cast<double>(i / across()));
+    return spacing * glm::dvec2(static_cast<double>(column), static_cast<double>(row));
   }
   // Below zero without being near another corner.
   void sink(std::size_t i) { heights[i] = -std::abs(heights[i]); }

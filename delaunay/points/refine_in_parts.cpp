@@ -58,6 +58,7 @@ class Grid {
  public:
   Grid(const std::vector<glm::dvec2>& sample, std::size_t columns, double shift) {
     std::vector<double> xs;
+    xs.reserve(sample.size());
     for (const glm::dvec2& p : sample) xs.push_back(p.x);
     columns_ = cuts_of(xs, columns, shift);
     std::vector<std::vector<double>> ys(columns_.size() + 1);
@@ -89,7 +90,7 @@ class Simplification::Parts {
   Parts(Simplification& terrain, const PointSpace<2>& space) : terrain_(terrain), space_(space) {}
 
   // Inserts what has an error above `least` and touches one part only. Returns how many places.
-  std::size_t refine(std::vector<Entry> entries, double shift, double least) {
+  std::size_t refine(const std::vector<Entry>& entries, double shift, double least) {
     cut(entries, shift);
     std::vector<std::size_t> inserted(parts_.size());
     parallel::parallel_for(0, parts_.size(), 1, [&](std::size_t i) {
@@ -240,10 +241,10 @@ void Simplification::refine_in_parts() {
     level = i < kMostLevels && level / 2 > max_error_ ? level / 2 : kEverything;
     std::size_t inserted = std::numeric_limits<std::size_t>::max();
     for (int cut = 0; cut < kMostCuts; ++cut) {
-      std::vector<Entry> entries = candidates_above(level);
+      const std::vector<Entry> entries = candidates_above(level);
       if (entries.size() < kEnoughCandidates || inserted < entries.size() / 4) break;
       constexpr double kShifts[] = {0, 0.5, 0.25, 0.75};
-      inserted = parts.refine(std::move(entries), kShifts[cut % 4], level);
+      inserted = parts.refine(entries, kShifts[cut % 4], level);
     }
     refine(level, kMaximumSimplices);
   }

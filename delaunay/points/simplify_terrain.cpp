@@ -81,7 +81,7 @@ std::vector<std::uint32_t> rim_of(std::span<const glm::dvec2> points) {
       combine);
   std::vector<std::uint32_t> corners(extremes.begin(), extremes.end());
   std::ranges::sort(corners, less);
-  corners.erase(std::ranges::unique(corners).begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   if (corners.size() > 2) corners = hull_corners(points, corners);
   const auto is_inside = [&](const glm::dvec2& q) {
     if (corners.size() < 3) return false;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "delaunay/mesh/arguments.h"
-#include "delaunay/natural_neighbours.h"
 
 namespace delray::delaunay {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "delaunay/natural_neighbours.h"
+#include "delaunay/interpolate.h"
 #include "delaunay/triangulate.h"
 
 namespace delray::delaunay {

@@ -106,9 +106,10 @@ Html by_elements(const TriangulateComparison& comparison, const Rows& rows,
     Series line{method + ", ranks", Source::predicted, {}, look_of_method(method)};
     for (const int ranks : shown) {
       const double taken = seconds(method, ranks);
-      if (base > 0 && taken > 0)
+      if (base > 0 && taken > 0) {
         line.points.push_back(
             {static_cast<double>(ranks), base / taken, base / taken, base / taken});
+      }
     }
     if (!line.points.empty()) series.push_back(std::move(line));
   }

@@ -14,7 +14,6 @@
 #include "delaunay/insertion/plan.h"
 #include "delaunay/interpolate.h"
 #include "delaunay/methods.h"
-#include "delaunay/natural_neighbours.h"
 #include "delaunay/quality.h"
 #include "delaunay/query.h"
 #include "delaunay/simplify_terrain.h"

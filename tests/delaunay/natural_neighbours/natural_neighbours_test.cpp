@@ -1,5 +1,5 @@
 // Natural neighbours against areas of Voronoi cells, at the hull and on symmetric points.
-#include "delaunay/natural_neighbours.h"
+#include "delaunay/interpolate.h"
 
 #include <gtest/gtest.h>
 
