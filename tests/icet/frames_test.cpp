@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "tests/icet/own_communicator.h"
+#include "tests/icet/ranks.h"
 #include "tests/icet/scene.h"
 
 namespace {
@@ -17,16 +19,6 @@ using scene::Scene;
 
 const float kBackground[4] = {0.1F, 0.2F, 0.3F, 0.4F};
 const double kIdentity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
-struct Ranks {
-  int rank = 0, size = 1;
-};
-Ranks ranks() {
-  Ranks result;
-  MPI_Comm_rank(MPI_COMM_WORLD, &result.rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &result.size);
-  return result;
-}
 
 // Tiles side by side and of different sizes, as many as there are ranks to show them.
 std::vector<Rect> set_tiles(bool several, Rect& display) {
@@ -386,82 +378,6 @@ void test_all(IceTCommunicator communicator) {
   CHECK(icetGetError() == ICET_INVALID_OPERATION);
 }
 
-// --- A communicator that a program makes itself: one of MPI behind functions of its own.
-
-IceTCommunicator wrap(IceTCommunicator inner);
-IceTCommunicator inner_of(IceTCommunicator self) {
-  return static_cast<IceTCommunicator>(self->data);
-}
-IceTCommunicator duplicate(IceTCommunicator self) {
-  return wrap(inner_of(self)->Duplicate(inner_of(self)));
-}
-void destroy(IceTCommunicator self) {
-  inner_of(self)->Destroy(inner_of(self));
-  delete self;
-}
-void receive(IceTCommunicator self, void* buffer, int count, IceTEnum type, int from, int tag) {
-  inner_of(self)->Recv(inner_of(self), buffer, count, type, from, tag);
-}
-IceTCommRequest start_send(IceTCommunicator self, const void* buffer, int count, IceTEnum type,
-                           int to, int tag) {
-  return inner_of(self)->Isend(inner_of(self), buffer, count, type, to, tag);
-}
-void wait(IceTCommunicator self, IceTCommRequest* request) {
-  inner_of(self)->Wait(inner_of(self), request);
-}
-int size(IceTCommunicator self) { return inner_of(self)->Comm_size(inner_of(self)); }
-int rank(IceTCommunicator self) { return inner_of(self)->Comm_rank(inner_of(self)); }
-
-IceTCommunicator wrap(IceTCommunicator inner) {
-  auto* const made = new IceTCommunicatorStruct();
-  made->Duplicate = &duplicate;
-  made->Destroy = &destroy;
-  made->Recv = &receive;
-  made->Isend = &start_send;
-  made->Wait = &wait;
-  made->Comm_size = &size;
-  made->Comm_rank = &rank;
-  made->data = inner;
-  return made;
-}
-
-// The functions of a communicator over MPI, which programs may call themselves.
-void test_table(IceTCommunicator c) {
-  const Ranks all = ranks();
-  const IceTInt next = (all.rank + 1) % all.size, before = (all.rank + all.size - 1) % all.size;
-  IceTInt got = -1;
-  c->Sendrecv(c, &all.rank, 1, ICET_INT, next, 3, &got, 1, ICET_INT, before, 3);
-  CHECK(got == before);
-  IceTCommRequest requests[2] = {c->Irecv(c, &got, 1, ICET_INT, before, 4),
-                                 c->Isend(c, &next, 1, ICET_INT, next, 4)};
-  const int first = c->Waitany(c, 2, requests);
-  CHECK(first == 0 || first == 1);
-  c->Wait(c, &requests[1 - first]);
-  CHECK(got == all.rank && requests[0] == nullptr && requests[1] == nullptr);
-  std::vector<IceTShort> mine(static_cast<std::size_t>(all.size), static_cast<IceTShort>(all.rank));
-  std::vector<IceTShort> everybody(mine.size());
-  c->Allgather(c, mine.data(), 1, ICET_SHORT, everybody.data());
-  for (std::size_t i = 0; i < everybody.size(); ++i) CHECK(everybody[i] == static_cast<int>(i));
-  c->Alltoall(c, everybody.data(), 1, ICET_SHORT, mine.data());
-  for (const IceTShort value : mine) CHECK(value == all.rank);
-  double value = all.rank + 0.5;
-  std::vector<double> values(everybody.size());
-  c->Gather(c, &value, 1, ICET_DOUBLE, values.data(), 0);
-  if (all.rank == 0) CHECK(values.back() == all.size - 0.5);
-  std::vector<int> counts(values.size(), 1), offsets(values.size());
-  std::iota(offsets.begin(), offsets.end(), 0);
-  c->Gatherv(c, &value, 1, ICET_DOUBLE, values.data(), counts.data(), offsets.data(), all.size - 1);
-  if (all.rank == all.size - 1) CHECK(values.front() == 0.5);
-  c->Barrier(c);
-  const IceTInt last = all.size - 1;
-  const IceTCommunicator alone = c->Subset(c, 1, &last);
-  CHECK((alone != nullptr) == (all.rank == last));
-  if (alone != nullptr) {
-    CHECK(alone->Comm_size(alone) == 1);
-    alone->Destroy(alone);
-  }
-}
-
 // Two contexts: one is a copy of the other's settings, and both draw.
 void test_contexts(IceTCommunicator communicator) {
   const IceTContext first = icetCreateContext(communicator);
@@ -491,12 +407,11 @@ void test_contexts(IceTCommunicator communicator) {
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   const IceTCommunicator over_mpi = icetCreateMPICommunicator(MPI_COMM_WORLD);
-  test_table(over_mpi);
   test_contexts(over_mpi);
   test_all(over_mpi);
-  const IceTCommunicator own = wrap(over_mpi);
-  test_all(own);
-  delete own;
+  const IceTCommunicator wrapped = own::wrap(over_mpi);
+  test_all(wrapped);
+  delete wrapped;
   icetDestroyMPICommunicator(over_mpi);
   CHECK(icetCreateContext(nullptr) == nullptr && icetGetError() == ICET_INVALID_VALUE);
   MPI_Finalize();

@@ -15,8 +15,8 @@ std::vector<RenderOption> layout_options();  // see frame_layout.h
 std::vector<RenderOption> animation_options();
 std::vector<RenderOption> rasterizer_options();
 std::vector<RenderOption> pack_options();
-std::vector<RenderOption> raytracer_options();
-std::vector<RenderOption> sampling_options();  // see sampling_options.h
+std::vector<RenderOption> raytracer_options();  // see raytracer_options.cpp
+std::vector<RenderOption> sampling_options();   // see sampling_options.h
 std::vector<RenderOption> output_options();
 
 }  // namespace delray::apps
