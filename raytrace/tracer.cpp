@@ -32,6 +32,7 @@ double elapsed_since(BuildClock::time_point start) {
 }
 
 bool any_mesh_moves(const scenes::Scene& scene) {
+  if (scene.animations.empty()) return false;  // a pack says how meshes are held, and never moves
   return std::ranges::any_of(scenes::mesh_motions(scene), [](scenes::MeshMotion motion) {
     return motion != scenes::MeshMotion::still;
   });

@@ -129,8 +129,10 @@ Movement pose(Scene& scene, const Pose& pose) {
 }
 
 std::vector<MeshMotion> mesh_motions(const Scene& scene) {
-  if (!scene.animations.motions.empty()) return scene.animations.motions;
-  std::vector<MeshMotion> motions(scene.meshes.size(), MeshMotion::still);
+  // Meshes that were added since stand still.
+  std::vector<MeshMotion> motions = scene.animations.motions;
+  motions.resize(scene.meshes.size(), MeshMotion::still);
+  if (!scene.animations.motions.empty()) return motions;
   for (const Follower& follower : scene.animations.instances)
     motions[scene.instances[follower.number].mesh] = MeshMotion::rigid;
   for (const DeformedMesh& deformed : scene.animations.meshes)

@@ -2,6 +2,8 @@
 // share out rows of squares, so that nobody waits for anybody.
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "parallel/arena.h"
 #include "parallel/parallel_for.h"
@@ -69,8 +71,11 @@ TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
     ++bins.first[square];
     bins.blocks[square] += blocks;
   });
-  std::uint32_t sum = 0;
-  for (std::uint32_t& first : bins.first) sum += std::exchange(first, sum);
+  std::uint64_t sum = 0;
+  for (std::uint32_t& first : bins.first)
+    sum += std::exchange(first, static_cast<std::uint32_t>(sum));
+  if (sum > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("--primary raster: triangles are seen in too many squares");
   bins.triangles.resize(sum);
   std::vector<std::uint32_t> next = bins.first;
   walk([&](const SeenTriangle& triangle, std::size_t square, std::uint32_t) {

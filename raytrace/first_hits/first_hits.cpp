@@ -54,7 +54,8 @@ std::vector<MeshPart> mesh_parts(std::span<const GeometryInstance> instances) {
   return parts;
 }
 
-// A packet of rays to triangles all over the scene.
+// A packet of rays to triangles all over the scene, every second one to the middle of an edge,
+// where rounding decides what passes.
 RayGroup rays_to_triangles(std::span<const GeometryInstance> instances,
                            std::span<const MeshPart> parts, const scenes::View& view,
                            std::uint32_t number) {
@@ -72,8 +73,9 @@ RayGroup rays_to_triangles(std::span<const GeometryInstance> instances,
     const GeometryInstance& instance = instances[part.instance];
     const glm::uvec3 corners =
         instance.mesh->triangles[part.first + share(0.75487766624669276, part.last - part.first)];
+    const glm::vec3 weights = i % 2 == 0 ? glm::vec3(1.0F / 3) : glm::vec3(0.5F, 0.5F, 0.0F);
     glm::vec3 to(0.0F);
-    for (int c = 0; c < 3; ++c) to += instance.positions[corners[c]] * (1.0F / 3);
+    for (int c = 0; c < 3; ++c) to += instance.positions[corners[c]] * weights[c];
     if (instance.instanced) to = instance.to_world * glm::vec4(to, 1.0F);
     const glm::vec3 direction = to - view.eye;
     group.active.ray[i] = -1;
@@ -92,12 +94,12 @@ RayGroup rays_to_triangles(std::span<const GeometryInstance> instances,
 
 // Whether what is drawn here is what Embree finds: its version, its instruction set and its
 // matrices of instances. Expressions that differ in a rounding give other bits for a large part of
-// all rays.
-bool finds_same_hits(const Tracer& tracer, std::span<const RaySpace> spaces,
-                     std::span<const std::uint32_t> space_of, std::span<const MeshPart> parts,
-                     const scenes::View& view) {
+// all rays. None where too few rays hit anything to tell.
+std::optional<bool> finds_same_hits(const Tracer& tracer, std::span<const RaySpace> spaces,
+                                    std::span<const std::uint32_t> space_of,
+                                    std::span<const MeshPart> parts, const scenes::View& view) {
   constexpr std::uint32_t kMostPackets = 32;
-  constexpr int kLeastHits = 16, kEnoughHits = 64;
+  constexpr int kLeastHits = 16, kEnoughHits = 128;
   int hits = 0;
   for (std::uint32_t n = 0; n < kMostPackets && hits < kEnoughHits; ++n) {
     const RayGroup asked = rays_to_triangles(tracer.instances, parts, view, n);
@@ -121,7 +123,7 @@ bool finds_same_hits(const Tracer& tracer, std::span<const RaySpace> spaces,
       ++hits;
     }
   }
-  return hits >= kLeastHits;
+  return hits >= kLeastHits ? std::optional(true) : std::nullopt;
 }
 
 // Packets of the window that may hit anything.
@@ -211,7 +213,11 @@ bool is_hidden(const SeenTriangle& triangle, const DrawnBlocks& blocks) {
   return true;
 }
 
-std::string why_unknown(const Tracer& tracer, const scenes::View& view) {
+std::string why_unknown(const Tracer& tracer, const SeenWindow& window) {
+  const scenes::View& view = window.view;
+  constexpr int kMostBlocks = 65534;  // SeenTriangle
+  if (std::max(window.pixels.width(), window.pixels.height()) > kBlockSide * kMostBlocks)
+    return "the picture is too large";
   if (view.orthographic) return "rays are parallel";
   if (view.lens_radius > 0.0F) return "rays start on a lens";
   if (tracer.embree.has_splats()) return "there are points or segments";
@@ -229,7 +235,7 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
     --trials.rest;
     return {nullptr, kAsFast};
   }
-  if (std::string why = why_unknown(tracer, window.view); !why.empty()) return {nullptr, why};
+  if (std::string why = why_unknown(tracer, window); !why.empty()) return {nullptr, why};
   const std::vector<MeshPart> parts = mesh_parts(tracer.instances);
   if (parts.empty() || window.pixels.empty()) return {nullptr, "there is nothing to draw"};
   std::unique_ptr<FirstHits> made(new FirstHits());
@@ -243,8 +249,8 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
   if (!trials.same) {
     trials.same = finds_same_hits(tracer, made->spaces_, made->space_of_, parts, window.view);
   }
-  if (!*trials.same)
-    return {nullptr, "Embree's arithmetic is not the one that is known, or nothing is hit"};
+  if (!trials.same) return {nullptr, "too few rays hit anything to try Embree's arithmetic"};
+  if (!*trials.same) return {nullptr, "Embree's arithmetic is not the one that is known"};
 
   const double packets = traced_packets(tracer, window) * passes;
   made->packet_seconds_ =

@@ -29,7 +29,9 @@ class FirstHits {
   // and some triangles; `always`: not then), or where hits cannot be told beforehand: through a
   // lens, in parallel, of points and segments, without BuildOptions::robust, or with an Embree
   // whose arithmetic is not the one that is known here, which is tried out with rays to triangles
-  // all over the scene. Parallel in the caller's arena. O(triangles + pixels).
+  // all over the scene. Parallel in the caller's arena, for each rank anew. O(t + s) for t
+  // triangles and the squares that each may be seen in, s together: of one that reaches behind the
+  // eye all of them. Unless `always`, s is no more than what may be drawn in the time of tracing.
   struct Made;
   static Made make(const Tracer& tracer, const SeenWindow& window, double passes, bool always,
                    Trials& trials);

@@ -52,7 +52,8 @@ struct TriangleBins {
 };
 
 // Triangles of lists whose nearest ones are nearer come first. Parallel: each thread walks through
-// all triangles and sorts those of some rows of squares. O(triangles + squares).
+// all triangles and sorts those of some rows of squares. O(t threads + s), where s sums the squares
+// of each triangle. Throws std::length_error for 2^32 of them.
 TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
                            const geometry::Rect& window);
 

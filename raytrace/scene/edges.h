@@ -27,7 +27,8 @@ inline float distance_from_edges(float u, float v) {
 // rounding. `reach`: the length of the longest vector that is rounded on the way, from the ray's
 // origin to the triangle and what a transform adds. Embree's error is that of the product of such a
 // vector, the ray's direction and an edge, some ten roundings, over that of two edges and the
-// direction: of a triangle that is seen as a sliver it is large.
+// direction: of a triangle that is seen as a sliver it is large. A neighbour some hundred times as
+// large, and nearer than its own size, may pass rays from further off; that is not looked at.
 inline float near_edge(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
                        const glm::vec3& direction, float reach) {
   const glm::vec3 ab = b - a, ac = c - a, bc = c - b;

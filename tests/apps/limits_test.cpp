@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -72,6 +73,21 @@ TEST(Limits, PicturesStructuresAndGeneratedScenesArePartOfThePromise) {
     EXPECT_NE(ran.err.find("(--memory)"), std::string::npos) << command << "\n" << ran.err;
   }
   EXPECT_TRUE(folder.files().empty());
+}
+
+// What is refused was noticed before it was there.
+TEST(Limits, TextOfStlIsReadWithinMemory) {
+  const Folder folder;
+  std::string text = "solid\n";
+  for (int i = 0; i < 1500000; ++i)
+    text += "facet\nvertex 1 2 3\nvertex 1 2 4\nvertex 1 3 5\nendfacet\n";
+  folder.write("a.stl", text + "endsolid\n");
+  const Ran ran = run("delray info a.stl --memory 90MB", folder.path());
+  EXPECT_EQ(ran.exit_code, 1) << ran.err;
+  std::smatch has;
+  ASSERT_TRUE(std::regex_search(ran.err, has, std::regex("the program has ([0-9.]+) MiB")))
+      << ran.err;
+  EXPECT_LT(std::stod(has[1]), 100) << ran.err;
 }
 
 TEST(Limits, TheRayTracerHasNoCopiesOfTextures) {

@@ -62,5 +62,19 @@ TEST(Pack, OfWhatMovesRendersAsItDoesAtRest) {
   }
 }
 
+TEST(Pack, OfWhatMovesTakesMoreMeshes) {
+  const Folder folder;
+  packs::write_pack(folder / "m.pack", turned_parts());
+  packs::PackReader pack(folder / "m.pack");
+  scenes::Scene scene = packs::unpack(pack);
+  for (int i = 0; i < 40; ++i) scene.meshes.push_back(scene.meshes.front());
+  const std::vector<scenes::MeshMotion> motions = scenes::mesh_motions(scene);
+  ASSERT_EQ(motions.size(), scene.meshes.size());
+  EXPECT_EQ(motions.back(), scenes::MeshMotion::still);
+  packs::write_pack(folder / "more.pack", scene);
+  packs::PackReader more(folder / "more.pack");
+  EXPECT_EQ(scenes::mesh_motions(packs::unpack(more)), motions);
+}
+
 }  // namespace
 }  // namespace delray::tests

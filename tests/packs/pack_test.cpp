@@ -210,6 +210,16 @@ TEST(Pack, CutShortAnywhereIsAnError) {
   EXPECT_NE(problem_of(path).find("cut short"), std::string::npos) << problem_of(path);
 }
 
+TEST(Pack, OfAnOlderVersionSaysWhatToDo) {
+  const tests::TemporaryFolder folder;
+  write_pack(folder / "a.pack", raster::random_scene(3, 300));
+  std::string content = content_of(folder / "a.pack");
+  content[8] = 3;
+  const std::string problem = problem_of(folder.write("old.pack", content));
+  EXPECT_NE(problem.find("of version 3"), std::string::npos) << problem;
+  EXPECT_NE(problem.find("pack its scene again"), std::string::npos) << problem;
+}
+
 TEST(Pack, AFlippedBitAnywhereIsAnError) {
   const tests::TemporaryFolder folder;
   write_pack(folder / "a.pack", raster::random_scene(4, 300));

@@ -148,6 +148,22 @@ void expect_some(std::uint64_t rasterized) {
   }
 }
 
+// Lest a change of ours makes the arithmetic another one, and all is traced for ever.
+TEST(FirstHits, KnowThePackagedEmbree) {
+  const EmbreeDevice device(BuildOptions{});
+  if (!device.version().starts_with("3.13") || !device.isa().starts_with("avx512"))
+    GTEST_SKIP() << "Embree " << device.version() << ", " << device.isa();
+  EXPECT_TRUE(is_known());
+}
+
+#if defined(__x86_64__)
+TEST(FirstHits, AreTracedByAnotherArithmetic) {
+  RenderOptions options = small(64, 48);
+  options.build.isa = "sse2";
+  EXPECT_EQ(expect_same(some_scene(3, {0, 1, 3}), camera_at({0, 1, 3}), options, "sse2"), 0U);
+}
+#endif
+
 TEST(FirstHits, AreThoseOfRaysInScenesOfAllKinds) {
   constexpr unsigned kScenes = 60;
   std::uint64_t rasterized = 0;
@@ -251,15 +267,32 @@ TEST(FirstHits, AreTracedWhereTheyCannotBeKnown) {
   parallel.height = 3.0F;
   none.eye = none.at = {0, 0, 90};  // away from the scene
   none.at.z = 100;
-  for (const scenes::Camera& camera : {lens, parallel, none}) {
+  for (const scenes::Camera& camera : {lens, parallel}) {
     comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
       const Result result = render(communicator, tracer, camera, options);
-      if (camera.aperture > 0 || camera.orthographic()) {
-        EXPECT_FALSE(result.statistics.why_traced.empty());
-        EXPECT_EQ(result.statistics.rays.rasterized, 0U);
-      }
+      EXPECT_FALSE(result.statistics.why_traced.empty());
+      EXPECT_EQ(result.statistics.rays.rasterized, 0U);
     });
   }
+  BuildOptions fast;
+  fast.robust = false;
+  const Tracer loose = make_tracer(scene, fast);
+  scenes::Scene dotted = scene;
+  scenes::Mesh& dots = dotted.meshes.emplace_back();
+  dots.shape = {scenes::Shape::Kind::disc, false, 0.05F};
+  dots.positions = {{0, 0, 0}};
+  dots.triangles = {{0, 0, 0}};
+  dotted.instances.push_back({static_cast<std::uint32_t>(dotted.meshes.size() - 1)});
+  scenes::complete(dotted, lens);
+  const Tracer points = make_tracer(dotted);
+  for (const Tracer* of : {&loose, &points}) {
+    comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+      const Result result = render(communicator, *of, camera_at({0, 1, 3}), options);
+      EXPECT_FALSE(result.statistics.why_traced.empty());
+      EXPECT_EQ(result.statistics.rays.rasterized, 0U);
+    });
+  }
+  expect_same(scene, none, options, "away from the scene");
   expect_same(scenes::Scene{}, none, small(8, 8), "empty scene");
 }
 
@@ -278,6 +311,7 @@ TEST(FirstHits, AreTheSameForEveryNumberOfRanksAndSchedule) {
                             traced.image.pixels() * sizeof(image::RgbaF)),
                 0)
           << schedule.name;
+      expect_some(result.statistics.rays.rasterized);
     });
   }
 }
