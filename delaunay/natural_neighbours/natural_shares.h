@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "delaunay/mesh/edge_pairs.h"
 #include "delaunay/interpolate.h"
+#include "delaunay/mesh/edge_pairs.h"
 #include "delaunay/predicates/circumcentres.h"
 
 namespace delray::delaunay::internal {
