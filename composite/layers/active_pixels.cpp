@@ -5,8 +5,9 @@
 // bits, without a branch, as scattered pixels cannot be predicted. Elements of 64 pixels that are
 // all covered are taken as they are. O(pixels of the group).
 //
-// Colours of four floats go one by one. Degenerate: values are never read beyond those that are
-// readable, though vectors are wider.
+// Colours of four floats go one by one. Degenerate: compressed values are never read beyond those
+// that are readable, though vectors are wider; those of all pixels of a group are, by less than
+// one.
 #include "composite/layers/active_pixels.h"
 
 #include <array>
@@ -25,8 +26,6 @@
 #ifndef DELRAY_COMPOSITE_ACTIVE_PIXELS
 #define DELRAY_COMPOSITE_ACTIVE_PIXELS
 namespace delray::composite::internal {
-
-inline constexpr std::size_t kMostLanes = 8;
 
 // Element j of row b: how many of the bits below j are set in b. The values of covered pixels, one
 // after the other, get to their lanes by it.

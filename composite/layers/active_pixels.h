@@ -12,6 +12,8 @@
 
 namespace delray::composite::internal {
 
+inline constexpr std::size_t kMostLanes = 8;  // of vectors of 4-byte values
+
 // Nothing that lies behind is seen.
 inline bool hides(image::Rgba8 colour) { return colour.a == 255; }
 inline bool hides(const image::RgbaF& colour) { return colour.a == 1; }
@@ -32,6 +34,9 @@ std::uint64_t find_with_alpha(std::span<const image::RgbaF> colour, GroupMask& m
 
 // Copies the values of covered pixels to `to`, one after the other. `values` are those of all
 // pixels of the group; size(to) of them are covered.
+//
+// REQUIRES: of a group whose size is no multiple of kMostLanes, values up to the next multiple may
+// be read, too, as those of an image::Plane: whole vectors are loaded.
 void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to);
 void compress(const image::Rgba8* values, const GroupMask& mask, std::span<image::Rgba8> to);
 void compress(const float* values, const GroupMask& mask, std::span<float> to);

@@ -4,7 +4,8 @@
 // A rank of a scheme that halves ranges sends most of its pixels as they are and copies the rest,
 // 1/n of them with radix-k: what is read and written is little more than what travels.
 //
-// Where rows have gaps, or the window cuts them, the pixels of a group are first put together.
+// Where rows have gaps, or the window cuts them, the pixels of a group are first put together, and
+// so are the last ones where a vector would reach beyond them.
 // Degenerate: an empty window costs nothing but the answer that there is nothing.
 #include "composite/borrowed.h"
 
@@ -178,12 +179,15 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
   SomePixels<Colour> borrowed_view(PixelRange pixels, bool colours) const {
     const auto width = static_cast<std::ptrdiff_t>(this->image().width);
     const auto begin = static_cast<std::ptrdiff_t>(pixels.begin);
-    const auto first_row = static_cast<int>(begin / width);
-    const auto last_row = static_cast<int>((static_cast<std::ptrdiff_t>(pixels.end) - 1) / width);
     const geometry::Rect& window = from_.window;
     SomePixels<Colour> result;
+    // Whole vectors are read (internal::compress), also the last one, which may reach beyond what
+    // the planes have.
+    constexpr auto kLanes = static_cast<std::ptrdiff_t>(internal::kMostLanes);
+    const auto size = static_cast<std::ptrdiff_t>(pixels.size());
+    const std::ptrdiff_t read_end = begin + (size + kLanes - 1) / kLanes * kLanes;
     const bool whole_rows = window.x0 == 0 && window.x1 == width && from_.stride == width &&
-                            first_row >= window.y0 && last_row < window.y1;
+                            begin >= window.y0 * width && read_end <= window.y1 * width;
     if (by_depth_) {
       if (whole_rows) {
         result.depth = from_.depth + (from_.origin + begin);

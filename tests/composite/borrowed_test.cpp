@@ -11,6 +11,7 @@
 #include "comm/threads.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
+#include "tests/support/guarded.h"
 
 namespace delray::composite {
 namespace {
@@ -28,32 +29,22 @@ RgbaF random_colour(std::mt19937& random, RgbaF /*type*/) {
           static_cast<float>(random() % 3) / 2};
 }
 
-// Pixels of a renderer: rows with gaps, some nearer than 1, some as deep or deeper, some NaN.
+// Pixels of a renderer: rows with gaps, some nearer than 1, some as deep or deeper, some NaN. No
+// memory is behind the last pixel of the window.
 template <class Colour>
 struct Rendered {
   int width = 0, height = 0;
-  std::vector<Colour> colour;
-  std::vector<float> depth;
+  test::Guarded<Colour> colour;
+  test::Guarded<float> depth;
   BorrowedPixels<Colour> pixels;
 };
 
 template <class Colour>
 Rendered<Colour> render(int width, int height, unsigned seed, bool without_colour = false) {
   std::mt19937 random(seed);
-  Rendered<Colour> made;
-  made.width = width;
-  made.height = height;
   const bool has_gaps = random() % 2 == 0;
   const int stride = has_gaps ? width + 1 + static_cast<int>(random() % 20) : width;
   const int before = has_gaps ? static_cast<int>(random() % 100) : 0;
-  const int size = before + stride * height + 16;
-  made.colour.resize(static_cast<std::size_t>(size));
-  made.depth.resize(static_cast<std::size_t>(size));
-  for (std::size_t i = 0; i < made.colour.size(); ++i) {
-    made.colour[i] = random_colour(random, Colour{});
-    const float depths[] = {0.25F, 0.5F, 0.75F, 1, 2, std::numeric_limits<float>::quiet_NaN()};
-    made.depth[i] = depths[random() % 6];
-  }
   geometry::Rect window{0, 0, width, height};
   if (random() % 3 != 0) {
     const auto below = [&](int end) {
@@ -62,6 +53,15 @@ Rendered<Colour> render(int width, int height, unsigned seed, bool without_colou
     window = {below(width), below(height), width, height};
     window.x1 = window.x0 + below(width - window.x0);
     window.y1 = window.y0 + below(height - window.y0);
+  }
+  const int size = window.empty() ? 0 : before + stride * (window.y1 - 1) + window.x1;
+  const auto pixels = static_cast<std::size_t>(size);
+  Rendered<Colour> made{
+      width, height, test::Guarded<Colour>(pixels), test::Guarded<float>(pixels), {}};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    made.colour[i] = random_colour(random, Colour{});
+    const float depths[] = {0.25F, 0.5F, 0.75F, 1, 2, std::numeric_limits<float>::quiet_NaN()};
+    made.depth[i] = depths[random() % 6];
   }
   made.pixels = {
       without_colour ? nullptr : made.colour.data(), made.depth.data(), before, stride, window, 1};
@@ -141,6 +141,10 @@ void expect_same_messages(Operator how) {
     EXPECT_TRUE(std::equal(image.colour.data(), image.colour.data() + image.pixels(),
                            expected.colour.data()))
         << "seed " << seed;
+    if (how == Operator::over) continue;
+    EXPECT_TRUE(
+        std::equal(image.depth.data(), image.depth.data() + image.pixels(), expected.depth.data()))
+        << "seed " << seed;
   }
 }
 
@@ -151,6 +155,20 @@ TEST(Borrowed, IsAsACopyIs) {
   expect_same_messages<Rgba8>(Operator::over);
   expect_same_messages<RgbaF>(Operator::nearest);
   expect_same_messages<RgbaF>(Operator::over);
+}
+
+// All of small images, of which no row ends where a vector does.
+TEST(Borrowed, ReadsNothingBehindTheLastPixel) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    const int width = 1 + static_cast<int>(seed % 13), height = 1 + static_cast<int>(seed % 11);
+    for (const Operator how : {Operator::nearest, Operator::over}) {
+      const auto mine = render<Rgba8>(width, height, seed);
+      const auto borrowed = make_borrowed(image::Image8(width, height), mine.pixels, how);
+      const auto copied = find_codec("active")->make(copy_of(mine, how), how);
+      const PixelRange all{0, borrowed->pixels()};
+      EXPECT_TRUE(same_bytes(borrowed->encode(all), copied->encode(all))) << "seed " << seed;
+    }
+  }
 }
 
 TEST(Borrowed, EverySchemeGivesWhatItGivesOfCopies) {
@@ -170,6 +188,10 @@ TEST(Borrowed, EverySchemeGivesWhatItGivesOfCopies) {
           if (communicator.rank() != 0) return;
           EXPECT_TRUE(std::equal(got.colour.data(), got.colour.data() + got.pixels(),
                                  expected.colour.data()))
+              << scheme.name << ", " << ranks << " ranks";
+          if (how == Operator::over) return;
+          EXPECT_TRUE(
+              std::equal(got.depth.data(), got.depth.data() + got.pixels(), expected.depth.data()))
               << scheme.name << ", " << ranks << " ranks";
         });
       }
