@@ -1,6 +1,7 @@
 // Several layers, one behind the other, as one: the tiles of a display are composited at once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -48,10 +49,17 @@ class JoinedLayer final : public Layer {
   std::unique_ptr<Layer> take_layer(std::size_t part) { return std::move(parts_[part].layer); }
   // Makes one where the part is missing.
   Layer& existing(std::size_t part);
+  // Calls f(part, pixels of the part) for each part that has some of a range.
+  template <class F>
+  void for_each_piece(PixelRange range, F&& f) const {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const std::uint64_t begin = std::max(range.begin, begins_[i]);
+      const std::uint64_t end = std::min(range.end, begins_[i + 1]);
+      if (begin < end) f(i, PixelRange{begin - begins_[i], end - begins_[i]});
+    }
+  }
 
  private:
-  template <class F>
-  void for_each_piece(PixelRange range, F&& f) const;
   template <class F>
   void for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f);
 

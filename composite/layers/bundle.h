@@ -35,7 +35,7 @@ inline comm::Buffer bundle(std::span<const comm::Buffer> messages) {
   return comm::Buffer::standing_for(counted, std::move(result));
 }
 
-// Takes a bundle apart. Throws comm::BadMessage where it ends too early.
+// Takes a bundle apart. Throws comm::BadMessage where it ends too early, or goes on.
 class Unbundling {
  public:
   explicit Unbundling(const comm::Buffer& bundle) : left_(bundle.data(), bundle.size()) {}
@@ -50,6 +50,8 @@ class Unbundling {
     left_ = left_.subspan(std::min(padded_to_8(size), left_.size()));
     return message;
   }
+  // After the last one.
+  void check_end() const { comm::check_message(left_.empty()); }
 
  private:
   std::span<const std::byte> left_;

@@ -97,6 +97,7 @@ class InterlacedLayer final : public Layer {
   void for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f) const {
     Unbundling messages(pixels);
     for_each_piece(range, [&](PixelRange real) { f(real, messages.next()); });
+    messages.check_end();
   }
 
   std::unique_ptr<Layer> layer_;

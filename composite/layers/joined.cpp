@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "composite/layers/bundle.h"
-#include "composite/schemes/range.h"
 
 namespace delray::composite {
 
@@ -20,23 +19,16 @@ Layer& JoinedLayer::existing(std::size_t part) {
   return *parts_[part].layer;
 }
 
-// Calls f(part, the piece's pixels in the part).
-template <class F>
-void JoinedLayer::for_each_piece(PixelRange range, F&& f) const {
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const PixelRange piece = internal::overlap(range, range_of(i));
-    if (piece.size() > 0) f(i, PixelRange{piece.begin - begins_[i], piece.end - begins_[i]});
-  }
-}
-
 // Calls f(part, pixels in the part, message of them) for what encode(range) gave.
 template <class F>
 void JoinedLayer::for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f) {
   Unbundling messages(pixels);
+  bool is_bundle = true;
   for_each_piece(range, [&](std::size_t part, PixelRange piece) {
-    if (piece.size() == range.size()) return f(part, piece, pixels);
-    f(part, piece, messages.next());
+    is_bundle = piece.size() < range.size();
+    is_bundle ? f(part, piece, messages.next()) : f(part, piece, pixels);
   });
+  if (is_bundle) messages.check_end();
 }
 
 comm::Buffer JoinedLayer::encode(PixelRange range) {

@@ -139,6 +139,16 @@ TEST(Joined, ReplacesByNothing) {
   EXPECT_FALSE(other->empty());
 }
 
+TEST(Joined, RefusesMessagesThatGoOn) {
+  const auto target = joined(1), other = joined(2);
+  const PixelRange all{0, target->pixels()};
+  const comm::Buffer whole = other->encode(all);
+  comm::Buffer more(whole.size() + 8);
+  std::fill_n(more.data(), more.size(), std::byte{});
+  std::copy_n(whole.data(), whole.size(), more.data());
+  EXPECT_THROW(target->merge(all, more, Side::higher), comm::BadMessage);
+}
+
 TEST(Joined, RefusesMessagesThatAreCut) {
   const auto target = joined(1), other = joined(2);
   const PixelRange all{0, target->pixels()};
