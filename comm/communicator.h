@@ -96,6 +96,10 @@ class Communicator {
   // the communicator knows better. A bus that all ranks listen to carries it once
   // (Network::is_bus()).
   virtual void multicast(std::span<const int> to, Tag tag, Buffer&& message);
+  // Returns once nothing that this rank has sent needs it any more: it may turn to other things for
+  // long, and nobody waits for it. Takes in what arrives meanwhile. REQUIRES: each rank that has
+  // not received all of it yet is in a call of the communicator, or comes to one by itself.
+  virtual void finish_sends() {}
   // Waits for a message and takes it; first in, first out per source and tag.
   virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;
   // The next message that receive(envelope.source, envelope.tag) would take, without waiting for

@@ -19,6 +19,8 @@ void ForwardingCommunicator::multicast(std::span<const int> to, Tag tag, Buffer&
   inner_.multicast(to, tag, std::move(message));
 }
 
+void ForwardingCommunicator::finish_sends() { inner_.finish_sends(); }
+
 Buffer ForwardingCommunicator::receive(int from_or_any, Tag tag_or_any) {
   return inner_.receive(from_or_any, tag_or_any);
 }

@@ -19,6 +19,7 @@ class ForwardingCommunicator : public Communicator {
 
   void send(int to, Tag tag, Buffer&& message) override;
   void multicast(std::span<const int> to, Tag tag, Buffer&& message) override;
+  void finish_sends() override;
   Buffer receive(int from_or_any, Tag tag_or_any) override;
   std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) override;
   std::unique_ptr<Communicator> split(int color, int key) override;

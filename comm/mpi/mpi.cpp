@@ -84,6 +84,17 @@ class MpiCommunicator final : public Communicator {
     }
   }
 
+  void finish_sends() override {
+    const PublishedWait published(*engine_, kAnyRank);
+    const Wait waited(engine_->options.timeout);
+    engine_->finish_some();
+    for (Backoff backoff(*engine_); !engine_->unfinished.empty(); backoff.pause(true)) {
+      if (waited.is_over()) end_stalled(waited, "its messages to be taken");
+      for (const auto& port : engine_->ports) port->pull();
+      engine_->finish_some();
+    }
+  }
+
   Buffer receive(int from_or_any, Tag tag_or_any) override {
     Message* message = wait(from_or_any, tag_or_any, Deadline::never(), /*whole=*/false);
     const int source = port_.root_rank(message->source);
@@ -204,6 +215,12 @@ class MpiCommunicator final : public Communicator {
                          from);
   }
 
+  [[noreturn]] void end_stalled(const Wait& waited, const char* what_for) const {
+    engine_->end_stalled("stalled: rank " + std::to_string(engine_->root_rank) + " waited " +
+                             waited.text() + " for " + what_for,
+                         kAnyRank);
+  }
+
   // Collective: returns once the sends of all ranks are complete. Every rank keeps taking messages
   // until all have said that theirs are out (the idea of NBX: Hoefler, Siebert and Lumsdaine 2010).
   void drain() {
@@ -214,11 +231,7 @@ class MpiCommunicator final : public Communicator {
       const PublishedWait published(*engine_, kAnyRank);
       const Wait waited(engine_->options.timeout);
       for (Backoff backoff(*engine_); !finished_all; backoff.pause(!finished_mine)) {
-        if (waited.is_over()) {
-          engine_->end_stalled("stalled: rank " + std::to_string(engine_->root_rank) + " waited " +
-                                   waited.text() + " for the others to end",
-                               kAnyRank);
-        }
+        if (waited.is_over()) end_stalled(waited, "the others to end");
         for (const auto& port : engine_->ports) port->pull();
         engine_->finish_some();
         if (!finished_mine && engine_->unfinished.empty()) {

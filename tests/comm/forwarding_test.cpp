@@ -24,6 +24,7 @@ class Noted final : public Communicator {
   void multicast(std::span<const int> to, Tag tag, Buffer&& message) override {
     note("multicast", static_cast<int>(to.size()), tag, static_cast<int>(message.size()));
   }
+  void finish_sends() override { note("finish_sends", 0, 0, 0); }
   Buffer receive(int from, Tag tag) override {
     note("receive", from, tag, 0);
     return Buffer(5);
@@ -64,6 +65,7 @@ void call_everything(Communicator& plain, std::vector<std::string>& calls) {
   plain.send(1, 2, Buffer(4));
   const std::vector<int> to = {1, 2, 4};
   plain.multicast(to, 6, Buffer(8));
+  plain.finish_sends();
   EXPECT_EQ(plain.receive(5, 6).size(), 5U);
   EXPECT_EQ(plain.probe(4, 3, Deadline::in(std::chrono::nanoseconds(11)))->bytes, 9U);
   EXPECT_EQ(plain.split(8, 9)->rank(), 3);
@@ -73,6 +75,7 @@ void call_everything(Communicator& plain, std::vector<std::string>& calls) {
   const std::vector<std::string> expected = {
       "send 1 2 4",
       "multicast 3 6 8",
+      "finish_sends 0 0 0",
       "receive 5 6 0",
       "probe 4 3 11",
       "split 8 9 0",
