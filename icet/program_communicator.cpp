@@ -3,8 +3,8 @@
 // The table has no way to look at a message before it is received, so each is announced: 16 bytes
 // with its tag and size, under the one tag that all of this has, as messages of one source stay in
 // order. What comes before it is asked for waits in a queue. Sends are waited for when a phase
-// begins and at the end: others need nothing else of this rank then to take in what it has sent. In
-// the midst of a phase ranks could wait for each other in a circle.
+// begins and when it is asked for: others need nothing else of this rank then to take in what it
+// has sent. In the midst of a phase ranks could wait for each other in a circle.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -37,7 +37,7 @@ class ProgramCommunicator final : public comm::Communicator {
     size_ = table_->Comm_size(table_);
   }
   ~ProgramCommunicator() override {
-    finish_sends();
+    ProgramCommunicator::finish_sends();
     table_->Destroy(table_);
   }
 
@@ -66,10 +66,12 @@ class ProgramCommunicator final : public comm::Communicator {
     std::deque<Came>& came = came_[from];
     auto found =
         std::find_if(came.begin(), came.end(), [&](const Came& m) { return m.tag == tag; });
-    while (found == came.end()) {
+    if (found == came.end()) {
       if (from == rank_) throw std::logic_error("a rank waits for itself");
-      came.push_back(next(from));
-      if (came.back().tag == tag) found = came.end() - 1;
+      do {
+        came.push_back(next(from));
+      } while (came.back().tag != tag);
+      found = came.end() - 1;
     }
     comm::Buffer message = std::move(found->message);
     came.erase(found);
@@ -85,6 +87,12 @@ class ProgramCommunicator final : public comm::Communicator {
   }
   void mark(comm::Phase /*phase*/, int round) override {
     if (round == 0) finish_sends();
+  }
+  void finish_sends() override {
+    for (Sent& sent : sent_) {
+      for (IceTCommRequest& request : sent.requests) table_->Wait(table_, &request);
+    }
+    sent_.clear();
   }
   void work(comm::Work /*kind*/, std::uint64_t /*amount*/) override {}
   void abort(std::string why) override {
@@ -116,12 +124,6 @@ class ProgramCommunicator final : public comm::Communicator {
                    static_cast<int>(std::min(kPiece, message.size() - at)), ICET_BYTE, from, kTag);
     }
     return {static_cast<comm::Tag>(announcement.tag), std::move(message)};
-  }
-  void finish_sends() {
-    for (Sent& sent : sent_) {
-      for (IceTCommRequest& request : sent.requests) table_->Wait(table_, &request);
-    }
-    sent_.clear();
   }
 
   IceTCommunicator table_;
