@@ -2,7 +2,9 @@
 // vertices there and of the points where the edges from those in front to those behind meet the
 // plane; all pairs of vertices do for edges, as the others lie inside.
 //
-// Degenerate: values that are not finite cover all of the display in their direction.
+// Degenerate: coordinates that are not finite count for nothing. As with IceT a vertex of which
+// nobody can say on which side of the plane it lies is on both: the nearest depth is that of the
+// plane then.
 #include "icet/viewport.h"
 
 #include <algorithm>
@@ -13,13 +15,12 @@ namespace {
 
 constexpr double kSmallestPart = 1e-5;  // of a pixel, less is rounding
 
+// Of normalised coordinates; as long as nothing is seen it is less than nothing.
 struct Extent {
   double low = 1, high = -1;
-  bool is_empty = true;
   void add(double value) {
-    low = is_empty ? value : std::min(low, value);
-    high = is_empty ? value : std::max(high, value);
-    is_empty = false;
+    if (value < low) low = value;  // never NaN
+    if (value > high) high = value;
   }
 };
 
@@ -36,10 +37,9 @@ double up(double value) { return std::ceil(value); }
 Projected project(std::span<const glm::dvec3> bounds, const glm::dmat4& clip_from_object,
                   const geometry::Rect& display) {
   if (bounds.empty()) return {display, -1, 1};
-  std::vector<glm::dvec4> in_front, behind;
+  std::vector<glm::dvec4> vertices;
   for (const glm::dvec3& vertex : bounds) {
-    const glm::dvec4 clip = clip_from_object * glm::dvec4(vertex, 1);
-    (clip.z >= -clip.w ? in_front : behind).push_back(clip);
+    vertices.push_back(clip_from_object * glm::dvec4(vertex, 1));
   }
   Extent x, y, z;
   const auto add = [&](const glm::dvec4& clip) {
@@ -48,18 +48,19 @@ Projected project(std::span<const glm::dvec3> bounds, const glm::dmat4& clip_fro
     y.add(clip.y / clip.w);
     z.add(clip.z / clip.w);
   };
-  for (const glm::dvec4& a : in_front) {
-    add(a);
-    const double from_a = a.z + a.w;
-    for (const glm::dvec4& b : behind) add(a + (b - a) * (from_a / (from_a - (b.z + b.w))));
+  for (const glm::dvec4& a : vertices) {
+    const double from_a = a.z + a.w;  // to the near plane
+    if (from_a >= 0) {
+      add(a);
+      continue;
+    }
+    for (const glm::dvec4& b : vertices) {
+      const double from_b = b.z + b.w;
+      if (from_b < 0) continue;
+      add(b + (a - b) * (from_b / (from_b - from_a)));
+      z.add(-1);
+    }
   }
-  if (x.is_empty) return {{display.x1, display.y1, display.x0, display.y0}, 1, -1};
-  const auto finite = [](Extent& extent) {
-    if (std::isnan(extent.low) || std::isnan(extent.high)) extent.low = -1, extent.high = 1;
-  };
-  finite(x);
-  finite(y);
-  finite(z);
   const int width = display.width(), height = display.height();
   return {{pixel(x.low, display.x0, width, kSmallestPart, &down),
            pixel(y.low, display.y0, height, kSmallestPart, &down),

@@ -17,7 +17,8 @@ struct Projected {
 };
 
 // Projects the convex hull of `bounds` by `clip_from_object` onto the display, cut at the near
-// plane and at the display's borders. No bounds: all of the display. O(vertices^2).
+// plane and at the display's borders. No bounds: all of the display. Coordinates that are not
+// finite count for nothing. O(vertices^2).
 Projected project(std::span<const glm::dvec3> bounds, const glm::dmat4& clip_from_object,
                   const geometry::Rect& display);
 
