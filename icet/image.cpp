@@ -1,11 +1,10 @@
 // What the interface tells of images: sizes, formats, planes, and copies in another format.
 #include "icet/image.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "icet/error.h"
+#include "icet/pixels.h"
 
 namespace delray::icet {
 namespace {
@@ -50,11 +49,6 @@ Image& with_colour(IceTImage handle) {
   if (image.colour_format == ICET_IMAGE_COLOR_NONE)
     throw Error(ICET_INVALID_OPERATION, "the image has no colours");
   return image;
-}
-
-// Channels 0 to 1 as 0 to 255.
-IceTUByte byte_of(float value) {
-  return static_cast<IceTUByte>(255 * std::clamp(value, 0.0F, 1.0F));
 }
 
 void copy_as_bytes(const Image& image, IceTUByte* to) {

@@ -71,10 +71,7 @@ RgbaF as_word(RgbaF colour) { return colour; }
 }  // namespace
 
 Rgba8 as_bytes(const glm::vec4& colour) {
-  const auto byte = [](float value) {
-    return static_cast<std::uint8_t>(255 * std::clamp(value, 0.0F, 1.0F));
-  };
-  return {byte(colour.r), byte(colour.g), byte(colour.b), byte(colour.a)};
+  return {byte_of(colour.r), byte_of(colour.g), byte_of(colour.b), byte_of(colour.a)};
 }
 
 template <class Colour>

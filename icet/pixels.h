@@ -2,6 +2,7 @@
 // the colour {} in layers, and in the interface the background and a depth of 1.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +13,10 @@
 
 namespace delray::icet {
 
-// Channels from 0 to 1 as bytes, towards zero.
+// A channel from 0 to 1 as a byte, towards zero; 0 for NaN.
+inline std::uint8_t byte_of(float value) {
+  return static_cast<std::uint8_t>(255 * std::min(std::max(0.0F, value), 1.0F));
+}
 image::Rgba8 as_bytes(const glm::vec4& colour);
 inline std::uint32_t word_of(image::Rgba8 colour) { return std::bit_cast<std::uint32_t>(colour); }
 
