@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "comm/agree_on_failure.h"
 #include "comm/forwarding.h"
 #include "composite/borrowed.h"
 #include "composite/codec.h"
@@ -110,7 +111,7 @@ class FrameComposition {
     part_.layer = std::make_unique<TimedLayer>(std::move(joined), context.frame.timings);
   }
 
-  void compose(bool failed) {
+  void compose() {
     const Strategy& strategy = *find_strategy(strategies(), settings_.strategy);
     const char* const scheme =
         strategy.scheme != nullptr
@@ -125,27 +126,22 @@ class FrameComposition {
       options.order.resize(static_cast<std::size_t>(ranks_.size()));
       std::iota(options.order.rbegin(), options.order.rend(), 0);
     }
-    part_ = composite::compose(ranks_, failed ? nullptr : std::move(part_.layer), scheme, options);
+    part_ = composite::compose(ranks_, std::move(part_.layer), scheme, options);
   }
 
   void finish() {
     const Stopwatch watch(context_.frame.timings.collect);
-    for (const PixelRange& range : part_.ranges) {
-      for_each_tile(range, [](composite::Layer& tile, PixelRange pixels) {
-        composite::settle(tile, pixels);
-      });
-    }
+    for_each_tile(
+        [](composite::Layer& tile, PixelRange pixels) { composite::settle(tile, pixels); });
     const bool collects = settings_.tiles.size() != 1 || settings_.is_enabled(ICET_COLLECT_IMAGES);
     if (!collects) return keep_own();
     if (!keeps_depth_) {
       // Tiles that are missing stay so: their pixels are the background, and do not travel.
-      for (const PixelRange& range : part_.ranges) {
-        for_each_tile(range, [&](composite::Layer& tile, PixelRange pixels) {
-          auto& image = image_of(tile);
-          put_background(image, pixels, context_.frame.true_background, settings_.blends());
-          exclusive_or(image, pixels, context_.frame.true_background);
-        });
-      }
+      for_each_tile([&](composite::Layer& tile, PixelRange pixels) {
+        auto& image = image_of(tile);
+        put_background(image, pixels, context_.frame.true_background, settings_.blends());
+        exclusive_or(image, pixels, context_.frame.true_background);
+      });
       how_ = Operator::over;
       for (std::size_t i = 0; i < tiles().parts(); ++i) {
         if (composite::Layer* const layer = tiles().layer(i)) {
@@ -198,15 +194,13 @@ class FrameComposition {
     return codec_.make(std::move(image), how_);
   }
 
-  // Calls f(layer, pixels) for the pixels of a range, tile by tile, where there is a tile.
+  // Calls f(layer, pixels) for the pixels that this rank has composited, where there is a tile.
   template <class F>
-  void for_each_tile(PixelRange range, F&& f) {
-    for (std::size_t i = 0; i < tiles().parts(); ++i) {
-      const PixelRange tile = tiles().range_of(i);
-      const std::uint64_t begin = std::max(range.begin, tile.begin);
-      const std::uint64_t end = std::min(range.end, tile.end);
-      if (begin < end && tiles().layer(i) != nullptr)
-        f(*tiles().layer(i), PixelRange{begin - tile.begin, end - tile.begin});
+  void for_each_tile(F&& f) {
+    for (const PixelRange& range : part_.ranges) {
+      tiles().for_each_piece(range, [&](std::size_t tile, PixelRange pixels) {
+        if (composite::Layer* const layer = tiles().layer(tile)) f(*layer, pixels);
+      });
     }
   }
 
@@ -265,13 +259,27 @@ class FrameComposition {
 }  // namespace
 
 template <class Colour>
-void compose_frame(Context& context, const TilePixels<Colour>& tiles, bool failed) {
-  FrameComposition<Colour> composition(context, tiles);
-  composition.compose(failed);
-  composition.finish();
+void compose_frame(Context& context, const TilePixels<Colour>& tiles) {
+  try {
+    FrameComposition<Colour> composition(context, tiles);
+    composition.compose();
+    composition.finish();
+  } catch (const comm::AgreedFailure&) {
+    context.ranks->finish_sends();
+    throw;
+  }
+  context.ranks->finish_sends();
 }
 
-template void compose_frame(Context&, const TilePixels<image::Rgba8>&, bool);
-template void compose_frame(Context&, const TilePixels<image::RgbaF>&, bool);
+template void compose_frame(Context&, const TilePixels<image::Rgba8>&);
+template void compose_frame(Context&, const TilePixels<image::RgbaF>&);
+
+void fail_frame(Context& context) {
+  try {
+    composite::compose(*context.ranks, nullptr, {});
+  } catch (const comm::AgreedFailure&) {  // as on the others
+  }
+  context.ranks->finish_sends();
+}
 
 }  // namespace delray::icet

@@ -20,12 +20,15 @@ using TilePixels = std::vector<std::optional<composite::BorrowedPixels<Colour>>>
 // Where images are not collected, each rank keeps the pixels that it has composited, if there is
 // one tile; of several, they are collected all the same.
 //
-// Collective; throws what composite::compose throws. With `failed` this rank has nothing to
-// composite, and all throw.
+// Collective; throws what composite::compose throws. In the end all that this rank has sent is on
+// its way: nobody waits for it, however long it draws the next frame.
 template <class Colour>
-void compose_frame(Context& context, const TilePixels<Colour>& tiles, bool failed = false);
+void compose_frame(Context& context, const TilePixels<Colour>& tiles);
 
-extern template void compose_frame(Context&, const TilePixels<image::Rgba8>&, bool);
-extern template void compose_frame(Context&, const TilePixels<image::RgbaF>&, bool);
+extern template void compose_frame(Context&, const TilePixels<image::Rgba8>&);
+extern template void compose_frame(Context&, const TilePixels<image::RgbaF>&);
+
+// What a rank calls instead that cannot go on: compose_frame throws on the others.
+void fail_frame(Context& context);
 
 }  // namespace delray::icet

@@ -21,6 +21,13 @@ std::atomic<Context*>& current_context() {
   return context;
 }
 
+void check_not_drawing(const Context& context) {
+  if (context.frame.is_drawing) {
+    throw Error(ICET_INVALID_OPERATION,
+                "a frame is being drawn: a callback changes nothing of it, and draws no other");
+  }
+}
+
 }  // namespace
 
 Settings::Settings() {
@@ -58,6 +65,12 @@ Context& current() {
   Context* const context = current_or_none();
   if (context == nullptr) throw Error(ICET_INVALID_OPERATION, "there is no current context");
   return *context;
+}
+
+Context& current_not_drawing() {
+  Context& context = current();
+  check_not_drawing(context);
+  return context;
 }
 
 }  // namespace delray::icet
@@ -99,6 +112,8 @@ void icetCopyState(IceTContext to, const IceTContext from) {
     if (to == nullptr || from == nullptr) {
       throw delray::icet::Error(ICET_INVALID_VALUE, "there is no such context");
     }
+    delray::icet::check_not_drawing(*to);
+    delray::icet::check_not_drawing(*from);
     to->settings = from->settings;
     to->frame = from->frame;
   });

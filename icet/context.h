@@ -98,6 +98,9 @@ using Context = IceTContextStruct;
 // The one that functions of the interface are about, as in IceT one for the whole process: threads
 // take turns. Throws Error (operation) where there is none.
 Context& current();
+// The same for what may not be called while a frame is drawn, as callbacks could: it would change
+// what is being drawn. Throws Error (operation) then, too.
+Context& current_not_drawing();
 // Null where there is none.
 Context* current_or_none() noexcept;
 

@@ -6,7 +6,7 @@
 #include "icet/draw.h"
 
 #include <algorithm>
-#include <exception>
+#include <cstdint>
 #include <glm/gtc/type_ptr.hpp>
 #include <type_traits>
 #include <utility>
@@ -222,21 +222,15 @@ TilePixels<Colour> tiles_of(Context& context, const void* colour, const float* d
 // Composites what make() gives; where it throws, the other ranks hear of it, too.
 template <class Colour, class F>
 void compose(Context& context, F&& make) {
-  TilePixels<Colour> tiles(context.settings.tiles.size());
-  std::exception_ptr failure;
+  TilePixels<Colour> tiles;
   try {
+    check_settings(context.settings);
     tiles = make(Colour{});
   } catch (...) {
-    failure = std::current_exception();
+    fail_frame(context);
+    throw;
   }
-  context.arena.execute([&] {
-    try {
-      compose_frame(context, tiles, failure != nullptr);
-    } catch (...) {
-      if (failure == nullptr) throw;
-    }
-  });
-  if (failure != nullptr) std::rethrow_exception(failure);
+  context.arena.execute([&] { compose_frame(context, tiles); });
 }
 
 template <class F>
@@ -250,11 +244,6 @@ IceTImage compose(Context& context, F&& make) {
   return context.frame.valid_pixels > 0 ? handle_of(context.result) : icetImageNull();
 }
 
-void check_not_drawing(const Context& context) {
-  if (context.frame.is_drawing)
-    throw Error(ICET_INVALID_OPERATION, "a frame is being drawn: a callback draws no other");
-}
-
 // An image of all of the display, with the rectangle of it that is valid.
 struct DrawnImage {
   const void* colour = nullptr;
@@ -262,24 +251,28 @@ struct DrawnImage {
   const IceTInt* valid = nullptr;  // x, y, width, height
 };
 
+// The part of the display that a program tells by any numbers: x, y, width, height.
+Rect part_of(const Rect& display, const IceTInt* given) {
+  const auto cut = [](int begin, int end, std::int64_t at) {
+    return static_cast<int>(std::clamp<std::int64_t>(begin + at, begin, end));
+  };
+  const std::int64_t x = given[0], y = given[1];
+  return {cut(display.x0, display.x1, x), cut(display.y0, display.y1, y),
+          cut(display.x0, display.x1, x + given[2]), cut(display.y0, display.y1, y + given[3])};
+}
+
 IceTImage composite_image(Context& context, const View& view, const DrawnImage& image) {
-  check_not_drawing(context);
   begin_frame(context, view);
   const Drawing drawing(context.frame);
   const Settings& settings = context.settings;
-  check_settings(settings);
-  const bool is_missing = (settings.has_colour() && image.colour == nullptr) ||
-                          (settings.has_depth() && !settings.blends() && image.depth == nullptr);
-  const Rect display = display_of(settings);
-  Rect valid = display;
-  if (const IceTInt* const v = image.valid) {
-    valid = geometry::intersection(display, {display.x0 + v[0], display.y0 + v[1],
-                                             display.x0 + v[0] + v[2], display.y0 + v[1] + v[3]});
-  }
-  find_contained(context, view, &valid);
   image::Plane<image::RgbaF> with_alpha;
   return compose(context, [&](auto colour) {
-    if (is_missing) throw Error(ICET_INVALID_VALUE, "there is no colour or depth to composite");
+    if ((settings.has_colour() && image.colour == nullptr) ||
+        (settings.has_depth() && !settings.blends() && image.depth == nullptr))
+      throw Error(ICET_INVALID_VALUE, "there is no colour or depth to composite");
+    const Rect display = display_of(settings);
+    const Rect valid = image.valid != nullptr ? part_of(display, image.valid) : display;
+    find_contained(context, view, &valid);
     return tiles_of<decltype(colour)>(context, settings.has_colour() ? image.colour : nullptr,
                                       image.depth, with_alpha);
   });
@@ -288,14 +281,13 @@ IceTImage composite_image(Context& context, const View& view, const DrawnImage& 
 }  // namespace
 
 IceTImage draw_frame(Context& context, const View& view, const DrawFunction& draw) {
-  check_not_drawing(context);
   begin_frame(context, view);
   const Drawing drawing(context.frame);
-  check_settings(context.settings);
-  if (!draw) throw Error(ICET_INVALID_OPERATION, "there is no function that draws");
-  find_contained(context, view, nullptr);
-  return compose(
-      context, [&](auto colour) { return TileDrawer<decltype(colour)>(context, draw).draw_all(); });
+  return compose(context, [&](auto colour) {
+    if (!draw) throw Error(ICET_INVALID_OPERATION, "there is no function that draws");
+    find_contained(context, view, nullptr);
+    return TileDrawer<decltype(colour)>(context, draw).draw_all();
+  });
 }
 
 }  // namespace delray::icet
@@ -306,7 +298,7 @@ IceTImage icetDrawFrame(const IceTDouble* projection_matrix, const IceTDouble* m
                         const IceTFloat* background_color) {
   using namespace delray::icet;
   return guarded([&] {
-    Context& context = current();
+    Context& context = current_not_drawing();
     return draw_frame(context, {projection_matrix, modelview_matrix, background_color},
                       context.settings.draw);
   });
@@ -320,7 +312,7 @@ IceTImage icetCompositeImage(const IceTVoid* color_buffer, const IceTVoid* depth
   using namespace delray::icet;
   return guarded([&] {
     return composite_image(
-        current(), {projection_matrix, modelview_matrix, background_color},
+        current_not_drawing(), {projection_matrix, modelview_matrix, background_color},
         {color_buffer, static_cast<const float*>(depth_buffer), valid_pixels_viewport});
   });
 }

@@ -22,7 +22,8 @@ using DrawFunction =
                        const IceTFloat* background, const IceTInt* readback, IceTImage result)>;
 
 // One frame, by a function that draws. The result is null on ranks without valid pixels; it is the
-// context's, until the next frame. Collective. Throws Error, and what compose_frame throws.
+// context's, until the next frame. Collective: what one rank throws, Error or anything else that
+// the function throws, ends the frame on all. REQUIRES: no frame is being drawn.
 IceTImage draw_frame(Context& context, const View& view, const DrawFunction& draw);
 
 }  // namespace delray::icet

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -64,17 +65,34 @@ void set_box(double x0, double x1, double y0, double y1, double z0, double z1) {
   });
 }
 
-int add_tile(const geometry::Rect& place, int display) {
-  Context& context = current();
+// Coordinates of the display stay within this, so that sums and differences of two are an int.
+constexpr std::int64_t kFarthest = (std::int64_t{1} << 30) - 1;
+
+// The interface counts pixels of an image by an int.
+void check_size(std::int64_t width, std::int64_t height) {
+  if (width < 0 || height < 0 || width > kFarthest || height > kFarthest ||
+      width * height > std::numeric_limits<IceTSizeType>::max())
+    throw Error(ICET_INVALID_VALUE, "an image of this size has more pixels than can be counted");
+}
+
+int add_tile(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height, int display) {
+  Context& context = current_not_drawing();
   Settings& settings = context.settings;
-  if (place.empty()) throw Error(ICET_INVALID_VALUE, "a tile has at least one pixel");
+  if (width < 1 || height < 1) throw Error(ICET_INVALID_VALUE, "a tile has at least one pixel");
+  if (std::min(x, y) < -kFarthest || std::max(x + width, y + height) > kFarthest)
+    throw Error(ICET_INVALID_VALUE, "a tile lies too far away");
+  const std::int64_t render_width = std::max<std::int64_t>(settings.render_width, width);
+  const std::int64_t render_height = std::max<std::int64_t>(settings.render_height, height);
+  check_size(render_width, render_height);
   if (display < 0 || display >= context.ranks->size())
     throw Error(ICET_INVALID_VALUE, "no process has the rank that is to show a tile");
   if (tile_of(settings, display) >= 0)
     throw Error(ICET_INVALID_VALUE, "a process shows one tile at most");
-  settings.tiles.push_back({place, display});
-  settings.render_width = std::max(settings.render_width, place.width());
-  settings.render_height = std::max(settings.render_height, place.height());
+  const auto as_int = [](std::int64_t value) { return static_cast<int>(value); };
+  settings.tiles.push_back(
+      {{as_int(x), as_int(y), as_int(x + width), as_int(y + height)}, display});
+  settings.render_width = as_int(render_width);
+  settings.render_height = as_int(render_height);
   return static_cast<int>(settings.tiles.size()) - 1;
 }
 
@@ -82,13 +100,6 @@ void set_feature(IceTEnum feature, bool on) {
   if (feature < ICET_STATE_ENABLE_START || feature >= ICET_STATE_ENABLE_END)
     throw Error(ICET_INVALID_VALUE, "there is no such feature");
   current().settings.enable(feature, on);
-}
-
-Context& not_drawing() {
-  Context& context = current();
-  if (context.frame.is_drawing)
-    throw Error(ICET_INVALID_OPERATION, "a format cannot change while a frame is drawn");
-  return context;
 }
 
 void set_group(Context& context, std::vector<int> group) {
@@ -101,6 +112,7 @@ void set_group(Context& context, std::vector<int> group) {
 }  // namespace delray::icet
 
 using delray::icet::current;
+using delray::icet::current_not_drawing;
 using delray::icet::Error;
 using delray::icet::guarded;
 
@@ -126,7 +138,7 @@ void icetBoundingBoxf(IceTFloat x_min, IceTFloat x_max, IceTFloat y_min, IceTFlo
 
 void icetResetTiles(void) {
   guarded([] {
-    auto& settings = current().settings;
+    auto& settings = current_not_drawing().settings;
     settings.tiles.clear();
     settings.render_width = settings.render_height = 0;
   });
@@ -134,13 +146,14 @@ void icetResetTiles(void) {
 
 int icetAddTile(IceTInt x, IceTInt y, IceTSizeType width, IceTSizeType height, int display_rank) {
   int tile = -1;
-  guarded([&] { tile = delray::icet::add_tile({x, y, x + width, y + height}, display_rank); });
+  guarded([&] { tile = delray::icet::add_tile(x, y, width, height, display_rank); });
   return tile;
 }
 
 void icetPhysicalRenderSize(IceTInt width, IceTInt height) {
   guarded([&] {
-    auto& settings = current().settings;
+    auto& settings = current_not_drawing().settings;
+    delray::icet::check_size(width, height);
     for (const auto& tile : settings.tiles) {
       if (width >= tile.place.width() && height >= tile.place.height()) continue;
       delray::icet::raise_warning(ICET_INVALID_VALUE, "the render size is smaller than a tile");
@@ -155,7 +168,7 @@ void icetSetColorFormat(IceTEnum color_format) {
   guarded([&] {
     if (color_format < ICET_IMAGE_COLOR_NONE || color_format > ICET_IMAGE_COLOR_RGB_FLOAT)
       throw Error(ICET_INVALID_ENUM, "there is no such format of colours");
-    delray::icet::not_drawing().settings.colour_format = color_format;
+    current_not_drawing().settings.colour_format = color_format;
   });
 }
 
@@ -163,7 +176,7 @@ void icetSetDepthFormat(IceTEnum depth_format) {
   guarded([&] {
     if (depth_format != ICET_IMAGE_DEPTH_NONE && depth_format != ICET_IMAGE_DEPTH_FLOAT)
       throw Error(ICET_INVALID_ENUM, "there is no such format of depths");
-    delray::icet::not_drawing().settings.depth_format = depth_format;
+    current_not_drawing().settings.depth_format = depth_format;
   });
 }
 
@@ -171,7 +184,7 @@ void icetCompositeMode(IceTEnum mode) {
   guarded([&] {
     if (mode != ICET_COMPOSITE_MODE_Z_BUFFER && mode != ICET_COMPOSITE_MODE_BLEND)
       throw Error(ICET_INVALID_ENUM, "there is no such composite mode");
-    current().settings.mode = mode;
+    current_not_drawing().settings.mode = mode;
   });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -84,7 +85,7 @@ IceTInt integer(IceTEnum name) {
 // The valid pixels of an image; returns how many there are.
 int check_image(IceTImage image, const Scene& scene, const std::vector<Rect>& tiles,
                 const std::vector<IceTInt>& order) {
-  CHECK(icetGetError() == ICET_NO_ERROR);
+  CHECK(icetGetError() == ICET_NO_ERROR && own::unfinished() == 0);
   const int tile = integer(ICET_VALID_PIXELS_TILE), pixels = integer(ICET_VALID_PIXELS_NUM);
   CHECK((icetImageIsNull(image) != 0) == (pixels == 0));
   if (pixels == 0) return 0;
@@ -225,7 +226,7 @@ void test_strategies() {
 
 // Larger images than tiles, several tiles drawn at once, empty ones too.
 void test_render_sizes() {
-  for (unsigned seed = 100; seed < 108; ++seed) {
+  for (unsigned seed = 100; seed < 112; ++seed) {  // 108 is a multiple of 12
     for (const Format& format : {kFormats[0], kFormats[4]}) {
       Scene scene{ranks().size, seed, {}, format.opaque};
       const std::vector<Rect> tiles = set_tiles(true, scene.display);
@@ -298,8 +299,19 @@ void test_timings() {
 // What a callback may not do, and an error on one rank is one on all.
 void draw_twice(const IceTDouble*, const IceTDouble*, const IceTFloat*, const IceTInt*, IceTImage) {
   CHECK(icetIsEnabled(ICET_COLLECT_IMAGES) == ICET_TRUE && integer(ICET_IS_DRAWING_FRAME) == 1);
+  const auto check_refused = [] { CHECK(icetGetError() == ICET_INVALID_OPERATION); };
   icetSetColorFormat(ICET_IMAGE_COLOR_NONE);
-  CHECK(icetGetError() == ICET_INVALID_OPERATION);
+  check_refused();
+  icetResetTiles();
+  check_refused();
+  CHECK(icetAddTile(200, 200, 5, 5, ranks().size - 2) == -1);
+  check_refused();
+  icetPhysicalRenderSize(500, 500);
+  check_refused();
+  icetCompositeMode(ICET_COMPOSITE_MODE_BLEND);
+  check_refused();
+  icetCopyState(icetGetContext(), icetGetContext());
+  check_refused();
   CHECK(icetImageIsNull(icetDrawFrame(kIdentity, kIdentity, kBackground)) == ICET_TRUE);
   CHECK(icetGetError() == ICET_INVALID_OPERATION);
 }
@@ -327,6 +339,72 @@ void test_small_images(const Rect& tile) {
     CHECK(icetImageGetColorcub(image)[4 * i] == (is_drawn ? 255 : scene::byte(kBackground[0])));
   }
   icetPhysicalRenderSize(width, height);
+}
+
+// Places and sizes that no int holds.
+void test_limits() {
+  constexpr IceTInt kMost = std::numeric_limits<IceTInt>::max();
+  icetResetTiles();
+  const IceTInt too_large[][4] = {
+      {kMost - 50, 0, 100, 100}, {0, kMost - 50, 100, 100}, {-kMost - 1, 0, kMost, 100},
+      {0, 0, 65536, 65536},      {0, 0, kMost, 1},          {0, 0, kMost, kMost}};
+  for (const IceTInt* tile : too_large) {
+    CHECK(icetAddTile(tile[0], tile[1], tile[2], tile[3], 0) == -1);
+    CHECK(icetGetError() == ICET_INVALID_VALUE && integer(ICET_NUM_TILES) == 0);
+  }
+  CHECK(icetAddTile(-20, 7, 40000, 1, 0) == 0);
+  if (ranks().size > 1) CHECK(icetAddTile(-20, 8, 1, 60000, 1) == -1);  // both at once
+  icetGetError();
+  const IceTInt sizes[][2] = {{65536, 65536}, {-1, 5}, {kMost, 2}};
+  for (const IceTInt* size : sizes) {
+    icetPhysicalRenderSize(size[0], size[1]);
+    CHECK(icetGetError() == ICET_INVALID_VALUE);
+    CHECK(integer(ICET_PHYSICAL_RENDER_WIDTH) == 40000 &&
+          integer(ICET_PHYSICAL_RENDER_HEIGHT) == 1);
+  }
+  // Of a part of an image that reaches far beyond it there is what the image has.
+  Rect display;
+  const Rect tile = set_tiles(false, display)[0];
+  const int width = tile.x1 - tile.x0, height = tile.y1 - tile.y0;
+  set_format(kFormats[0], order_of(1));
+  const std::vector<float> depth(static_cast<std::size_t>(width * height));
+  const std::vector<IceTUInt> colour(depth.size(), 0xFFFFFFFF);
+  const IceTInt far[4] = {5, 3, kMost, kMost};
+  const IceTImage image =
+      icetCompositeImage(colour.data(), depth.data(), far, nullptr, nullptr, kBackground);
+  for (int i = 0; icetImageIsNull(image) == ICET_FALSE && i < width * height; ++i) {
+    const bool is_valid = i % width >= 5 && i / width >= 3;
+    CHECK(icetImageGetColorcub(image)[4 * i] == (is_valid ? 255 : scene::byte(kBackground[0])));
+  }
+  CHECK(icetGetError() == ICET_NO_ERROR);
+}
+
+// Where a rank alone has settings that draw nothing, all hear of it instead of waiting.
+void test_settings_of_one_rank() {
+  const bool is_first = ranks().rank == 0;
+  Scene scene{ranks().size, 60, {}, true};
+  drawn() = {&scene, ranks().rank, 0};
+  const auto check_failed = [&](IceTEnum first_error) {
+    CHECK(icetImageIsNull(icetDrawFrame(kIdentity, kIdentity, kBackground)) == ICET_TRUE);
+    CHECK(icetGetError() == (is_first ? first_error : ICET_INVALID_OPERATION));
+  };
+  set_tiles(true, scene.display);
+  set_format(kFormats[0], order_of(1));
+  icetBoundingVertices(0, ICET_NULL, 0, 0, nullptr);
+  if (is_first) icetDrawCallback(nullptr);
+  check_failed(ICET_INVALID_OPERATION);
+  icetDrawCallback(&scene::draw);
+  if (is_first) icetSetDepthFormat(ICET_IMAGE_DEPTH_NONE);
+  check_failed(ICET_INVALID_OPERATION);
+  set_format(kFormats[5], order_of(1));
+  if (is_first) icetSetColorFormat(ICET_IMAGE_COLOR_RGB_FLOAT);
+  check_failed(ICET_INVALID_VALUE);
+  set_format(kFormats[0], order_of(1));
+  if (is_first) icetResetTiles();
+  check_failed(ICET_INVALID_OPERATION);
+  const std::vector<Rect> tiles = set_tiles(true, scene.display);
+  scene::tell_bounds(scene, ranks().rank);
+  check_collected(icetDrawFrame(kIdentity, kIdentity, kBackground), scene, tiles, order_of(1));
 }
 
 void test_errors() {
@@ -372,6 +450,8 @@ void test_all(IceTCommunicator communicator) {
   test_not_collected();
   test_replicated();
   test_errors();
+  test_limits();
+  test_settings_of_one_rank();
   icetDestroyContext(context);
   CHECK(icetGetContext() == nullptr);
   icetStrategy(ICET_STRATEGY_DIRECT);

@@ -5,6 +5,12 @@
 
 namespace own {
 
+// Sends that were started and not waited for.
+inline int& unfinished() {
+  static int count = 0;
+  return count;
+}
+
 inline IceTCommunicator wrap(IceTCommunicator inner);
 inline IceTCommunicator inner_of(IceTCommunicator self) {
   return static_cast<IceTCommunicator>(self->data);
@@ -22,9 +28,11 @@ inline void receive(IceTCommunicator self, void* buffer, int count, IceTEnum typ
 }
 inline IceTCommRequest start_send(IceTCommunicator self, const void* buffer, int count,
                                   IceTEnum type, int to, int tag) {
+  ++unfinished();
   return inner_of(self)->Isend(inner_of(self), buffer, count, type, to, tag);
 }
 inline void wait(IceTCommunicator self, IceTCommRequest* request) {
+  --unfinished();
   inner_of(self)->Wait(inner_of(self), request);
 }
 inline int size(IceTCommunicator self) { return inner_of(self)->Comm_size(inner_of(self)); }
