@@ -5,8 +5,10 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <memory>
 #include <string>
 
+#include "icet/compose_frame.h"
 #include "icet/context.h"
 #include "icet/draw.h"
 #include "icet/error.h"
@@ -21,7 +23,12 @@ constexpr Enum kModelview = 0x1700, kProjection = 0x1701;
 constexpr Enum kColourBit = 0x4000, kDepthBit = 0x0100;
 constexpr Enum kRgba = 0x1908, kRgb = 0x1907, kDepthComponent = 0x1902;
 constexpr Enum kUnsignedByte = 0x1401, kFloat = 0x1406;
-constexpr Enum kPackAlignment = 0x0D05, kUnpackAlignment = 0x0CF5;
+constexpr Enum kPixelStoreBit = 1;
+// What glPixelStorei sets for reading (pack) and drawing (unpack).
+constexpr Enum kPackSwapBytes = 0x0D00, kPackRowLength = 0x0D02, kPackSkipRows = 0x0D03;
+constexpr Enum kPackSkipPixels = 0x0D04, kPackAlignment = 0x0D05;
+constexpr Enum kUnpackSwapBytes = 0x0CF0, kUnpackRowLength = 0x0CF2, kUnpackSkipRows = 0x0CF3;
+constexpr Enum kUnpackSkipPixels = 0x0CF4, kUnpackAlignment = 0x0CF5;
 constexpr Enum kDepthTest = 0x0B71, kBlend = 0x0BE2, kAllBits = 0x000FFFFF;
 constexpr Enum kOne = 1, kOneMinusSourceAlpha = 0x0303;
 
@@ -43,18 +50,44 @@ void call(const char* name, T... arguments) {
   reinterpret_cast<void (*)(T...)>(find_function(name))(arguments...);
 }
 
+// At the end of a scope: functions that were there a moment ago are found again.
+template <class F>
+void restore(F&& f) noexcept {
+  try {
+    f();
+  } catch (const Error&) {
+  }
+}
+
 // Settings of OpenGL that are as before at the end.
 class Attributes {
  public:
   Attributes() { call("glPushAttrib", kAllBits); }
   ~Attributes() {
-    try {
-      call("glPopAttrib");
-    } catch (const Error&) {  // it was there a moment ago
-    }
+    restore([] { call("glPopAttrib"); });
   }
   Attributes(const Attributes&) = delete;
   Attributes& operator=(const Attributes&) = delete;
+};
+
+// Rows of pixels in memory follow each other without gaps, whatever the program has set; as before
+// at the end.
+class DenseRows {
+ public:
+  DenseRows() {
+    call("glPushClientAttrib", kPixelStoreBit);
+    for (const Enum name :
+         {kPackSwapBytes, kPackRowLength, kPackSkipRows, kPackSkipPixels, kUnpackSwapBytes,
+          kUnpackRowLength, kUnpackSkipRows, kUnpackSkipPixels}) {
+      call("glPixelStorei", name, 0);
+    }
+    for (const Enum name : {kPackAlignment, kUnpackAlignment}) call("glPixelStorei", name, 1);
+  }
+  ~DenseRows() {
+    restore([] { call("glPopClientAttrib"); });
+  }
+  DenseRows(const DenseRows&) = delete;
+  DenseRows& operator=(const DenseRows&) = delete;
 };
 
 void load_matrices(const double* projection, const double* modelview) {
@@ -64,13 +97,45 @@ void load_matrices(const double* projection, const double* modelview) {
   call("glLoadMatrixd", modelview);
 }
 
+void clear_to(const float* colour) {
+  call("glClearColor", colour[0], colour[1], colour[2], colour[3]);
+}
+
+// What a program has set before a frame, and has again at the end.
+class ProgramView {
+ public:
+  ProgramView() {
+    call("glGetIntegerv", kViewport, viewport.data());
+    call("glGetIntegerv", kMatrixMode, &mode_);
+    call("glGetDoublev", kProjectionMatrix, projection.data());
+    call("glGetDoublev", kModelviewMatrix, modelview.data());
+    call("glGetFloatv", kColourClear, background.data());
+  }
+  ~ProgramView() {
+    restore([&] {
+      clear_to(background.data());
+      load_matrices(projection.data(), modelview.data());
+      call("glMatrixMode", static_cast<Enum>(mode_));
+    });
+  }
+  ProgramView(const ProgramView&) = delete;
+  ProgramView& operator=(const ProgramView&) = delete;
+
+  std::array<int, 4> viewport{};
+  std::array<double, 16> projection{}, modelview{};
+  std::array<float, 4> background{};
+
+ private:
+  int mode_ = 0;
+};
+
 // Reads what lies at the viewport's corner into an image.
 void read_back(Context& context, const std::array<int, 4>& viewport, IceTImage result) {
   const double begin = icetWallTime();
   const int width = icetImageGetWidth(result), height = icetImageGetHeight(result);
   const Settings& settings = context.settings;
   call("glReadBuffer", settings.gl_read_buffer);
-  call("glPixelStorei", kPackAlignment, 1);
+  const DenseRows dense_rows;
   const auto read = [&](Enum format, Enum type, void* to) {
     call("glReadPixels", viewport[0], viewport[1], width, height, format, type, to);
   };
@@ -86,7 +151,7 @@ void read_back(Context& context, const std::array<int, 4>& viewport, IceTImage r
   context.frame.timings.render -= seconds;  // it is measured around this
 }
 
-// Draws an image at the corner of the viewport, or over all of it.
+// Draws an image at the corner of the viewport, or over all of it. Leaves other matrices.
 void show(Context& context, const std::array<int, 4>& viewport, IceTImage image) {
   const Settings& settings = context.settings;
   if (icetImageIsNull(image) != ICET_FALSE || !settings.is_enabled(ICET_GL_DISPLAY)) return;
@@ -94,14 +159,14 @@ void show(Context& context, const std::array<int, 4>& viewport, IceTImage image)
     return raise_warning(ICET_INVALID_OPERATION, "an image without colours cannot be shown");
   const double begin = icetWallTime();
   const Attributes attributes;
+  const DenseRows dense_rows;
   const int width = icetImageGetWidth(image), height = icetImageGetHeight(image);
   const std::array<double, 16> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  std::array<double, 16> projection{}, modelview{};
-  call("glGetDoublev", kProjectionMatrix, projection.data());
-  call("glGetDoublev", kModelviewMatrix, modelview.data());
   call("glDrawBuffer", settings.gl_read_buffer);
   call("glDisable", kDepthTest);
-  if (settings.is_enabled(ICET_GL_DISPLAY_COLORED_BACKGROUND)) {
+  // What is blended over the background already is not once more.
+  if (settings.blends() && settings.is_enabled(ICET_GL_DISPLAY_COLORED_BACKGROUND) &&
+      !settings.is_enabled(ICET_CORRECT_COLORED_BACKGROUND)) {
     call("glEnable", kBlend);
     call("glBlendFunc", kOne, kOneMinusSourceAlpha);
     call("glClear", kColourBit);
@@ -116,7 +181,6 @@ void show(Context& context, const std::array<int, 4>& viewport, IceTImage image)
   } else {
     call("glPixelZoom", 1.0F, 1.0F);
   }
-  call("glPixelStorei", kUnpackAlignment, 1);
   if (settings.colour_format == ICET_IMAGE_COLOR_RGBA_UBYTE) {
     call("glDrawPixels", width, height, kRgba, kUnsignedByte,
          static_cast<const void*>(icetImageGetColorcub(image)));
@@ -125,45 +189,43 @@ void show(Context& context, const std::array<int, 4>& viewport, IceTImage image)
          settings.colour_format == ICET_IMAGE_COLOR_RGB_FLOAT ? kRgb : kRgba, kFloat,
          static_cast<const void*>(icetImageGetColorcf(image)));
   }
-  load_matrices(projection.data(), modelview.data());
   context.frame.timings.buffer_write += icetWallTime() - begin;
 }
 
-IceTImage draw_gl_frame(Context& context) {
-  Settings& settings = context.settings;
+// What a frame begins with; throws Error where this rank cannot draw.
+std::unique_ptr<ProgramView> begin_gl_frame(const Settings& settings) {
   if (!settings.gl_initialised)
     throw Error(ICET_INVALID_OPERATION, "icetGLInitialize was not called for this context");
   if (settings.gl_draw == nullptr)
     throw Error(ICET_INVALID_OPERATION, "there is no function that draws; see icetGLDrawCallback");
-  std::array<int, 4> viewport{};
-  std::array<double, 16> projection{}, modelview{};
-  std::array<float, 4> background{};
-  int mode = 0;
-  call("glGetIntegerv", kViewport, viewport.data());
-  call("glGetIntegerv", kMatrixMode, &mode);
-  call("glGetDoublev", kProjectionMatrix, projection.data());
-  call("glGetDoublev", kModelviewMatrix, modelview.data());
-  call("glGetFloatv", kColourClear, background.data());
-  icetPhysicalRenderSize(viewport[2], viewport[3]);
-  const auto clear_to = [](const float* colour) {
-    call("glClearColor", colour[0], colour[1], colour[2], colour[3]);
-  };
-  const DrawFunction draw = [&](const IceTDouble* tile_projection, const IceTDouble* tile_modelview,
-                                const IceTFloat* colour, const IceTInt* /*readback*/,
+  return std::make_unique<ProgramView>();
+}
+
+IceTImage draw_gl_frame(Context& context) {
+  const double begin = icetWallTime();
+  const Settings& settings = context.settings;
+  std::unique_ptr<ProgramView> view;
+  try {
+    view = begin_gl_frame(settings);
+  } catch (...) {
+    fail_frame(context);
+    throw;
+  }
+  icetPhysicalRenderSize(view->viewport[2], view->viewport[3]);
+  const DrawFunction draw = [&](const IceTDouble* projection, const IceTDouble* modelview,
+                                const IceTFloat* background, const IceTInt* /*readback*/,
                                 IceTImage result) {
-    load_matrices(tile_projection, tile_modelview);
-    clear_to(colour);
+    load_matrices(projection, modelview);
+    clear_to(background);
     call("glClear", kColourBit | kDepthBit);
     settings.gl_draw();
-    read_back(context, viewport, result);
+    read_back(context, view->viewport, result);
   };
-  const double begin = icetWallTime();
-  const IceTImage image =
-      draw_frame(context, {projection.data(), modelview.data(), background.data()}, draw);
-  clear_to(background.data());
-  load_matrices(projection.data(), modelview.data());
-  show(context, viewport, image);
-  call("glMatrixMode", static_cast<Enum>(mode));
+  const IceTImage image = draw_frame(
+      context, {view->projection.data(), view->modelview.data(), view->background.data()}, draw);
+  clear_to(view->background.data());
+  show(context, view->viewport, image);
+  view.reset();
   context.frame.timings.total = icetWallTime() - begin;
   return image;
 }
@@ -211,7 +273,7 @@ void icetGLDrawCallback(IceTGLDrawCallbackType callback) {
 }
 
 IceTImage icetGLDrawFrame(void) {
-  return guarded([] { return draw_gl_frame(current()); });
+  return guarded([] { return draw_gl_frame(current_not_drawing()); });
 }
 
 }  // extern "C"

@@ -22,6 +22,10 @@ struct Gl {
       std::vector<unsigned char>(4 * (kX + kWidth) * (kY + kHeight));
   std::vector<float> depth = std::vector<float>((kX + kWidth) * (kY + kHeight), 1.0F);
   int drawn_width = 0, drawn_height = 0, pushed = 0;
+  // As a program has set it, which has read into something wider: swapped bytes, LSB first, row
+  // length, skipped rows and pixels, alignment; of reading (0x0D00) and of drawing (0x0CF0).
+  std::array<int, 6> pack = {1, 0, 77, 3, 5, 8}, unpack = {1, 0, 99, 2, 7, 2};
+  std::vector<std::array<std::array<int, 6>, 2>> pushed_pixel_store;
   std::vector<unsigned char> drawn;
   std::array<float, 2> zoom{};
   unsigned char* pixel(int x, int y) { return &colour[4 * ((kY + y) * (kX + kWidth) + kX + x)]; }
@@ -37,6 +41,12 @@ int rank() {
   int result = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &result);
   return result;
+}
+
+// In the midst of a frame something else is set.
+void fail() {
+  gl().matrix_mode = 0x1701;
+  throw 1;
 }
 
 // Covers columns of its rank.
@@ -78,9 +88,24 @@ void glClear(unsigned bits) {
 }
 void glReadBuffer(unsigned mode) { gl().read_buffer = mode; }
 void glDrawBuffer(unsigned mode) { CHECK(mode == gl().read_buffer || gl().read_buffer == 0); }
-void glPixelStorei(unsigned, int) {}
+void glPixelStorei(unsigned name, int value) {
+  CHECK((name & ~0xFU) == 0x0D00 || (name & ~0xFU) == 0x0CF0);
+  ((name & ~0xFU) == 0x0D00 ? gl().pack : gl().unpack)[name & 0xFU] = value;
+}
+void glPushClientAttrib(unsigned bits) {
+  CHECK((bits & 1) != 0);
+  gl().pushed_pixel_store.push_back({gl().pack, gl().unpack});
+}
+void glPopClientAttrib() {
+  CHECK(!gl().pushed_pixel_store.empty());
+  gl().pack = gl().pushed_pixel_store.back()[0];
+  gl().unpack = gl().pushed_pixel_store.back()[1];
+  gl().pushed_pixel_store.pop_back();
+}
 void glReadPixels(int x, int y, int width, int height, unsigned format, unsigned, void* to) {
   CHECK(x == kX && y == kY && width == kWidth && height == kHeight);
+  const std::array<int, 6> dense = {0, 0, 0, 0, 0, 1};
+  CHECK(gl().pack == dense);
   for (int row = 0; row < height; ++row) {
     if (format == 0x1902) {
       std::memcpy(static_cast<float*>(to) + row * width, &gl().depth_at(0, row),
@@ -99,12 +124,25 @@ void glBlendFunc(unsigned, unsigned) {}
 void glRasterPos2d(double x, double y) { CHECK(x == -1 && y == -1); }
 void glPixelZoom(float x, float y) { gl().zoom = {x, y}; }
 void glDrawPixels(int width, int height, unsigned, unsigned, const void* pixels) {
+  const std::array<int, 6> dense = {0, 0, 0, 0, 0, 1};
+  CHECK(gl().unpack == dense);
   gl().drawn_width = width;
   gl().drawn_height = height;
   const auto* const bytes = static_cast<const unsigned char*>(pixels);
   gl().drawn.assign(bytes, bytes + 4 * width * height);
 }
 #pragma GCC visibility pop
+}
+
+// What a frame leaves as the program has set it.
+void check_restored() {
+  CHECK(gl().pushed == 0 && gl().matrix_mode == 0x1700 && gl().clear_colour[0] == 0.5F);
+  for (const auto& values : gl().matrices) {
+    CHECK(values[0] == 1 && values[5] == 1 && values[13] == 0);
+  }
+  const Gl before;
+  CHECK(gl().pushed_pixel_store.empty() && gl().pack == before.pack);
+  CHECK(gl().unpack == before.unpack);
 }
 
 int main(int argc, char** argv) {
@@ -119,27 +157,37 @@ int main(int argc, char** argv) {
   CHECK(icetGetError() == ICET_INVALID_OPERATION);
   CHECK(icetImageIsNull(icetGLDrawFrame()) == ICET_TRUE);
   CHECK(icetGetError() == ICET_INVALID_OPERATION);
-  icetGLInitialize();
+  // Where one rank cannot draw, the others do not wait for it.
+  if (rank() != 0) {
+    icetGLInitialize();
+    icetGLDrawCallback(&draw);
+  }
+  icetAddTile(0, 0, kWidth, kHeight - 10, 0);  // lower than the viewport
+  icetStrategy(ICET_STRATEGY_REDUCE);
+  CHECK(icetGetError() == ICET_NO_ERROR);
+  CHECK(icetImageIsNull(icetGLDrawFrame()) == ICET_TRUE);
+  CHECK(icetGetError() == ICET_INVALID_OPERATION);
+  check_restored();
+  if (rank() == 0) icetGLInitialize();
   CHECK(icetGLIsInitialized() == ICET_TRUE && icetGetError() == ICET_NO_ERROR);
   icetGLInitialize();
   CHECK(icetGetError() == ICET_INVALID_OPERATION);
   icetGLSetReadBuffer(0x1234);
   CHECK(icetGetError() == ICET_INVALID_ENUM);
   icetGLSetReadBuffer(0x0404);  // GL_FRONT
+  icetGLDrawCallback(rank() == 0 ? &fail : &draw);
+  CHECK(icetImageIsNull(icetGLDrawFrame()) == ICET_TRUE);
+  CHECK(icetGetError() == (rank() == 0 ? ICET_SANITY_CHECK_FAIL : ICET_INVALID_OPERATION));
+  check_restored();
   icetGLDrawCallback(&draw);
   void* callback = nullptr;
   icetGetPointerv(ICET_GL_DRAW_FUNCTION, &callback);
   CHECK(callback == reinterpret_cast<void*>(&draw));
-  icetAddTile(0, 0, kWidth, kHeight - 10, 0);  // lower than the viewport
-  icetStrategy(ICET_STRATEGY_REDUCE);
   icetEnable(ICET_GL_DISPLAY_INFLATE);
   const IceTImage image = icetGLDrawFrame();
   CHECK(icetGetError() == ICET_NO_ERROR);
-  CHECK(gl().read_buffer == 0x0404 && gl().pushed == 0 && gl().matrix_mode == 0x1700);
-  CHECK(gl().clear_colour[0] == 0.5F);
-  for (const auto& values : gl().matrices) {
-    CHECK(values[0] == 1 && values[5] == 1 && values[13] == 0);  // as before
-  }
+  CHECK(gl().read_buffer == 0x0404);
+  check_restored();
   double read = 0, write = -1;
   icetGetDoublev(ICET_BUFFER_READ_TIME, &read);
   icetGetDoublev(ICET_BUFFER_WRITE_TIME, &write);
