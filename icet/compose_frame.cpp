@@ -98,7 +98,12 @@ class FrameComposition {
         codec_(*composite::find_codec("active")),
         how_(settings_.blends() ? Operator::over : Operator::nearest),
         keeps_depth_(settings_.has_depth() && !settings_.blends() &&
-                     !(settings_.has_colour() && settings_.is_enabled(ICET_COMPOSITE_ONE_BUFFER))) {
+                     !(settings_.has_colour() && settings_.is_enabled(ICET_COMPOSITE_ONE_BUFFER))),
+        strategy_(*find_strategy(strategies(), settings_.strategy)),
+        background_(!settings_.blends() || context.frame.corrects_background ||
+                            strategy_.always_corrects
+                        ? context.frame.true_background
+                        : glm::vec4(0)) {
     std::vector<composite::JoinedLayer::Part> parts;
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       const auto pixels = static_cast<std::uint64_t>(settings_.tiles[i].place.area());
@@ -112,10 +117,9 @@ class FrameComposition {
   }
 
   void compose() {
-    const Strategy& strategy = *find_strategy(strategies(), settings_.strategy);
     const char* const scheme =
-        strategy.scheme != nullptr
-            ? strategy.scheme
+        strategy_.scheme != nullptr
+            ? strategy_.scheme
             : find_strategy(single_image_strategies(), settings_.single_image)->scheme;
     composite::ComposeOptions options;
     options.interlace = interlaces();
@@ -139,8 +143,8 @@ class FrameComposition {
       // Tiles that are missing stay so: their pixels are the background, and do not travel.
       for_each_tile([&](composite::Layer& tile, PixelRange pixels) {
         auto& image = image_of(tile);
-        put_background(image, pixels, context_.frame.true_background, settings_.blends());
-        exclusive_or(image, pixels, context_.frame.true_background);
+        put_background(image, pixels, background_, settings_.blends());
+        exclusive_or(image, pixels, background_);
       });
       how_ = Operator::over;
       for (std::size_t i = 0; i < tiles().parts(); ++i) {
@@ -160,9 +164,9 @@ class FrameComposition {
       auto& image = image_of(tiles().existing(tile));
       const PixelRange all{0, image.pixels()};
       if (keeps_depth_) {
-        put_background(image, all, context_.frame.true_background, false);
+        put_background(image, all, background_, false);
       } else {
-        exclusive_or(image, all, context_.frame.true_background);
+        exclusive_or(image, all, background_);
       }
       show(tile, all);
     }
@@ -208,8 +212,7 @@ class FrameComposition {
   void keep_own() {
     if (!part_.ranges.empty()) {
       const PixelRange range{part_.ranges.front().begin, part_.ranges.back().end};
-      put_background(image_of(tiles().existing(0)), range, context_.frame.true_background,
-                     settings_.blends());
+      put_background(image_of(tiles().existing(0)), range, background_, settings_.blends());
       show(0, range);
     }
     give_back_images();
@@ -253,6 +256,8 @@ class FrameComposition {
   const composite::Codec& codec_;
   Operator how_;      // of layers that are made from now on
   bool keeps_depth_;  // the program gets depths
+  const Strategy& strategy_;
+  glm::vec4 background_;  // behind all
   OwnedPixels part_;
 };
 

@@ -68,8 +68,9 @@ void begin_frame(Context& context, const View& view) {
   if (view.background != nullptr) frame.true_background = glm::make_vec4(view.background);
   const bool blends = context.settings.blends();
   frame.background = blends ? glm::vec4(0) : frame.true_background;
-  frame.corrects_background =
-      blends && context.settings.is_enabled(ICET_CORRECT_COLORED_BACKGROUND);
+  frame.corrects_background = blends &&
+                              context.settings.is_enabled(ICET_CORRECT_COLORED_BACKGROUND) &&
+                              word_of(as_bytes(frame.true_background)) != 0;
   context.pool.give_back(std::move(context.result.bytes));
   context.pool.give_back(std::move(context.result.floats));
   context.result.bytes = {};

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::array kStrategies = {
     Strategy{ICET_STRATEGY_DIRECT, "Direct", "direct-send", true},
-    Strategy{ICET_STRATEGY_SEQUENTIAL, "Sequential", nullptr, true},
+    Strategy{ICET_STRATEGY_SEQUENTIAL, "Sequential", nullptr, true, true},
     Strategy{ICET_STRATEGY_SPLIT, "Split", "direct-send", false},
-    Strategy{ICET_STRATEGY_REDUCE, "Reduce", nullptr, true},
+    Strategy{ICET_STRATEGY_REDUCE, "Reduce", nullptr, true, true},
     Strategy{ICET_STRATEGY_VTREE, "Virtual Tree", "2-3-swap", false},
 };
 

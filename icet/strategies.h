@@ -13,6 +13,8 @@ struct Strategy {
   const char* name;    // for people, as the interface tells it
   const char* scheme;  // for composite::compose; null: that of the single-image strategy
   bool ordered;        // IceT's own blends in order; here all do
+  // Blended colours are over the background without ICET_CORRECT_COLORED_BACKGROUND, too.
+  bool always_corrects = false;
 };
 
 // The tables.

@@ -1,8 +1,10 @@
 // What the interface answers, line by line: run with IceT's own libraries and with Delray's, the
 // lines are the same. Values of names come in, too, so that icet/interface.h agrees with IceT's.
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,8 @@ void error(const char* after) {
   std::fflush(out());
 }
 
+bool has_holes = false;  // some pixels are empty, some translucent; of bytes without depth
+
 void draw(const IceTDouble* projection, const IceTDouble* modelview, const IceTFloat* background,
           const IceTInt* readback, IceTImage image) {
   for (int i = 0; i < 16; ++i) std::fprintf(out(), " %.9g %.9g", projection[i], modelview[i]);
@@ -72,6 +76,11 @@ void draw(const IceTDouble* projection, const IceTDouble* modelview, const IceTF
   const int pixels = icetImageGetNumPixels(image);
   for (int i = 0; i < pixels; ++i) {
     const bool covered = i % 3 != 0;
+    if (has_holes) {  // where one rank alone has colours none are rounded
+      const IceTUByte colours[3][4] = {{0, 0, 0, 0}, {80, 40, 20, 255}, {12, 34, 56, 128}};
+      std::memcpy(icetImageGetColorub(image) + 4 * i, colours[rank == 0 ? i % 3 : 0], 4);
+      continue;
+    }
     if (icetImageGetColorFormat(image) == ICET_IMAGE_COLOR_RGBA_UBYTE) {
       const IceTUByte colour[4] = {static_cast<IceTUByte>(i), 7, 9, 255};
       std::memcpy(icetImageGetColorub(image) + 4 * i, colour, 4);
@@ -111,6 +120,8 @@ void show(IceTImage image) {
 }
 
 const float kBackground[4] = {0.2F, 0.4F, 0.6F, 0.5F};
+// Over others than red translucent colours are rounded, and cut off by IceT.
+const float kRed[4] = {1, 0, 0, 1}, kNothing[4] = {}, kNearlyNothing[4] = {0.001F, 0.002F, 0, 0};
 const double kIdentity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const double kPerspective[16] = {1, 0, 0, 0, 0, 1.3, 0, 0, 0, 0, -1.1, -1, 0, 0, -0.5, 0};
 
@@ -252,6 +263,23 @@ void ask_frames() {
   icetCompositeMode(ICET_COMPOSITE_MODE_BLEND);
   icetEnable(ICET_CORRECT_COLORED_BACKGROUND);
   frame();  // all pixels hide the others
+  has_holes = true;
+  for (const bool corrects : {true, false}) {
+    corrects ? icetEnable(ICET_CORRECT_COLORED_BACKGROUND)
+             : icetDisable(ICET_CORRECT_COLORED_BACKGROUND);
+    for (const IceTEnum strategy : {ICET_STRATEGY_DIRECT, ICET_STRATEGY_SPLIT, ICET_STRATEGY_REDUCE,
+                                    ICET_STRATEGY_SEQUENTIAL}) {
+      icetStrategy(strategy);
+      for (const float* background : {kRed, kNothing, kNearlyNothing}) {
+        const IceTImage image = icetDrawFrame(kIdentity, kIdentity, background);
+        IceTInt tile = -1;
+        icetGetIntegerv(ICET_TILE_DISPLAYED, &tile);
+        if (tile >= 0)
+          show(image);  // with some strategies IceT returns one that has no valid pixels
+      }
+    }
+  }
+  has_holes = false;
   icetCompositeMode(ICET_COMPOSITE_MODE_Z_BUFFER);
   icetSetDepthFormat(ICET_IMAGE_DEPTH_FLOAT);
 }
@@ -285,6 +313,20 @@ void ask_bounds() {
   const float far_away = 3e38F;
   icetBoundingVertices(1, ICET_FLOAT, 0, 1, &far_away);
   frame(kPerspective);
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float odd : {std::nanf(""), infinity, -infinity}) {
+    for (int k = 0; k < 3; ++k) {
+      float corners[] = {-0.5F, -0.25F, -2, 0.25F, 0.5F, -3, 0.75F, 0.75F, -4};
+      corners[3 * k + k] = odd;
+      for (const double* projection : {kIdentity, kPerspective}) {
+        icetBoundingVertices(3, ICET_FLOAT, 0, 3, corners);
+        frame(projection);
+        STATE(ICET_CONTAINED_VIEWPORT, 4);
+        STATE(ICET_NEAR_DEPTH);
+        STATE(ICET_FAR_DEPTH);
+      }
+    }
+  }
   const float vertices[] = {0, 0, 77, 0, 0.9F, 77, -0.9F, -0.8F, 77};
   icetBoundingVertices(2, ICET_FLOAT, 12, 3, vertices);
   STATE(ICET_GEOMETRY_BOUNDS, 9);

@@ -135,6 +135,7 @@ void set_format(const Format& format, const std::vector<IceTInt>& order) {
   icetCompositeMode(format.opaque ? ICET_COMPOSITE_MODE_Z_BUFFER : ICET_COMPOSITE_MODE_BLEND);
   icetCompositeOrder(order.data());
   format.opaque ? icetDisable(ICET_ORDERED_COMPOSITE) : icetEnable(ICET_ORDERED_COMPOSITE);
+  icetEnable(ICET_CORRECT_COLORED_BACKGROUND);
 }
 
 // Somebody's image of all of the display, of which only a part is valid: the part that the scene
@@ -222,6 +223,34 @@ void test_strategies() {
   }
   icetStrategy(ICET_STRATEGY_REDUCE);
   icetSingleImageStrategy(ICET_SINGLE_IMAGE_STRATEGY_AUTOMATIC);
+}
+
+// Blended colours are over the background where that is asked for, or the strategy always has it
+// so.
+void test_background() {
+  const float nothing[4] = {0, 0, 0, 0};
+  for (const Format& format : kFormats) {
+    for (const bool corrects : {true, false}) {
+      for (IceTEnum strategy = ICET_STRATEGY_DIRECT; strategy <= ICET_STRATEGY_VTREE; ++strategy) {
+        const bool is_over = format.opaque || corrects || strategy == ICET_STRATEGY_SEQUENTIAL ||
+                             strategy == ICET_STRATEGY_REDUCE;
+        Scene scene{ranks().size, 50, {}, format.opaque, false, !is_over};
+        const std::vector<Rect> tiles = set_tiles(strategy % 2 == 0, scene.display);
+        const std::vector<IceTInt> order = order_of(50);
+        set_format(format, order);
+        icetStrategy(strategy);
+        corrects ? icetEnable(ICET_CORRECT_COLORED_BACKGROUND)
+                 : icetDisable(ICET_CORRECT_COLORED_BACKGROUND);
+        drawn() = {&scene, ranks().rank, 0};
+        scene::tell_bounds(scene, ranks().rank);
+        check_collected(icetDrawFrame(kIdentity, kIdentity, kBackground), scene, tiles, order);
+        CHECK(integer(ICET_NEED_BACKGROUND_CORRECTION) == (!format.opaque && corrects ? 1 : 0));
+        icetDrawFrame(kIdentity, kIdentity, nothing);
+        CHECK(integer(ICET_NEED_BACKGROUND_CORRECTION) == 0);
+      }
+    }
+  }
+  icetStrategy(ICET_STRATEGY_REDUCE);
 }
 
 // Larger images than tiles, several tiles drawn at once, empty ones too.
@@ -446,6 +475,7 @@ void test_all(IceTCommunicator communicator) {
   test_formats(true);
   test_timings();
   test_strategies();
+  test_background();
   test_render_sizes();
   test_not_collected();
   test_replicated();

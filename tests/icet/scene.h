@@ -31,7 +31,8 @@ struct Scene {
   unsigned seed = 1;
   Rect display;
   bool opaque = true;
-  bool replicated = false;  // all ranks have what rank 0 has
+  bool replicated = false;    // all ranks have what rank 0 has
+  bool over_nothing = false;  // no background
 
   static std::uint32_t mix(std::uint32_t x) {
     x ^= x >> 16;
@@ -79,7 +80,7 @@ struct Scene {
       return as_bytes ? static_cast<float>(byte(value)) / 255 : value;
     };
     float background[4];
-    for (int k = 0; k < 4; ++k) background[k] = channel(background_colour[k]);
+    for (int k = 0; k < 4; ++k) background[k] = over_nothing ? 0 : channel(background_colour[k]);
     Pixel result;
     for (const IceTInt rank : order) {
       Pixel pixel = at(rank, x, y);
