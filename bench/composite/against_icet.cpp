@@ -404,9 +404,9 @@ void measure(const Communicators& communicators, const Options& options, const s
 int main(int argc, char** argv) {
   delray::bench::Options options;
   CLI::App app("Times of compositing beside IceT");
-  app.add_option("--width", options.width);
-  app.add_option("--height", options.height);
-  app.add_option("--repeats", options.repeats);
+  app.add_option("--width", options.width)->check(CLI::PositiveNumber);
+  app.add_option("--height", options.height)->check(CLI::PositiveNumber);
+  app.add_option("--repeats", options.repeats)->check(CLI::PositiveNumber);
   app.add_option("--pictures", options.pictures)->delimiter(',');
   app.add_option("--only", options.only, "strategies and schemes")->delimiter(',');
   app.add_flag("--all", options.all, "all codecs");

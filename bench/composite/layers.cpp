@@ -142,10 +142,10 @@ void print(const Options& options) {
 int main(int argc, char** argv) {
   delray::bench::Options options;
   CLI::App app("Times of cutting and merging layers");
-  app.add_option("--width", options.width);
-  app.add_option("--height", options.height);
-  app.add_option("--threads", options.threads);
-  app.add_option("--repeats", options.repeats);
+  app.add_option("--width", options.width)->check(CLI::PositiveNumber);
+  app.add_option("--height", options.height)->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
+  app.add_option("--repeats", options.repeats)->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
   delray::parallel::Arena(options.threads).execute([&] { delray::bench::print(options); });
 }

@@ -263,21 +263,29 @@ void compare(const Options& options, const std::string& kind) {
 
 int main(int argc, char** argv) {
   using namespace delray::bench;
-  MPI_Init(&argc, &argv);
   Options options;
   CLI::App app("One program over IceT's interface, by IceT and by Delray");
-  app.add_option("--width", options.width, "Pixels");
-  app.add_option("--height", options.height, "Pixels");
-  app.add_option("--repeats", options.repeats, "Frames of each");
-  app.add_option("--pictures", options.pictures, "discs, random, full, blended");
-  app.add_option("--icet", options.icet, "IceT's library for MPI");
-  app.add_option("--delray", options.delray, "libdelray_icet.so.1");
-  app.add_option("--skew", options.skew, "Milliseconds from one process's beginning to the next's");
+  app.add_option("--width", options.width, "Pixels")->check(CLI::Range(2, 32768));
+  app.add_option("--height", options.height, "Pixels")->check(CLI::Range(2, 32768));
+  app.add_option("--repeats", options.repeats, "Frames of each")->check(CLI::PositiveNumber);
+  app.add_option("--pictures", options.pictures, "Which pictures")
+      ->check(CLI::IsMember(std::vector<std::string>(options.pictures)));
+  app.add_option("--icet", options.icet, "IceT's library for MPI")->check(CLI::ExistingFile);
+  app.add_option("--delray", options.delray, "libdelray_icet.so.1")->check(CLI::ExistingFile);
+  app.add_option("--skew", options.skew, "Milliseconds from one process's beginning to the next's")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("!--no-interlace", options.interlaces, "Without ICET_INTERLACE_IMAGES");
   app.add_flag("--tiles", options.tiles, "2 x 2 tiles, by four processes or more");
   app.add_flag("--draws", options.draws,
                "icetDrawFrame, with a callback, in place of icetCompositeImage");
   CLI11_PARSE(app, argc, argv);
+  MPI_Init(&argc, &argv);
+  int ranks = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  if (options.tiles && ranks < 4) {
+    fmt::print(stderr, "--tiles: four processes or more show them\n");
+    MPI_Abort(MPI_COMM_WORLD, 2);
+  }
   for (const std::string& kind : options.pictures) compare(options, kind);
   MPI_Finalize();
   return 0;
