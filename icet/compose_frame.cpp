@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -265,10 +266,16 @@ class FrameComposition {
 
 template <class Colour>
 void compose_frame(Context& context, const TilePixels<Colour>& tiles) {
+  std::optional<FrameComposition<Colour>> composition;
   try {
-    FrameComposition<Colour> composition(context, tiles);
-    composition.compose();
-    composition.finish();
+    composition.emplace(context, tiles);
+  } catch (...) {  // no memory
+    fail_frame(context);
+    throw;
+  }
+  try {
+    composition->compose();
+    composition->finish();
   } catch (const comm::AgreedFailure&) {
     context.ranks->finish_sends();
     throw;

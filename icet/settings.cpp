@@ -72,7 +72,7 @@ constexpr std::int64_t kFarthest = (std::int64_t{1} << 30) - 1;
 void check_size(std::int64_t width, std::int64_t height) {
   if (width < 0 || height < 0 || width > kFarthest || height > kFarthest ||
       width * height > std::numeric_limits<IceTSizeType>::max())
-    throw Error(ICET_INVALID_VALUE, "an image of this size has more pixels than can be counted");
+    throw Error(ICET_INVALID_VALUE, "an image has from 0 to 2^31 - 1 pixels");
 }
 
 int add_tile(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height, int display) {
@@ -215,6 +215,7 @@ void icetDataReplicationGroupColor(IceTInt color) {
     auto& context = current();
     const auto colours = delray::comm::all_gather(
         *context.ranks, delray::comm::Buffer::of_value(std::int32_t{color}));
+    context.ranks->finish_sends();
     std::vector<int> group;
     for (std::size_t i = 0; i < colours.size(); ++i) {
       if (colours[i].as<std::int32_t>()[0] == color) group.push_back(static_cast<int>(i));
