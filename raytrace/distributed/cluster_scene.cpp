@@ -57,9 +57,9 @@ void ClusterScene::add(std::shared_ptr<const Cluster> cluster) {
     part.instances.push_back(at);
     instances_[at] = instances[i];
     numbers_[at] = cluster->numbers()[i];
-    // A mesh has the place of its first instance.
-    const bool first = i == 0 || instances[i].mesh_number != instances[i - 1].mesh_number;
-    instances_[at].mesh_number = first ? at : instances_[part.instances[i - 1]].mesh_number;
+    // Pieces of one mesh are placed by the same instances: it has the number of the first.
+    const Piece& piece = cluster->data().pieces[instances[i].mesh_number];
+    instances_[at].mesh_number = piece.instances.front();
   }
   part.cluster = std::move(cluster);
 }

@@ -130,48 +130,128 @@ void attach_splats(const EmbreeScene::State& state, RTCScene tree, unsigned numb
   check(state.device, "adding points");
 }
 
-void attach_instance(EmbreeScene::State& state, unsigned number, const GeometryInstance& instance) {
-  RTCDevice device = state.device;
-  if (state.meshes.size() <= instance.mesh_number) state.meshes.resize(instance.mesh_number + 1);
-  EmbreeScene::State::Mesh& mesh = state.meshes[instance.mesh_number];
+void add_piece(EmbreeScene::State& state, EmbreeScene::State::Instance& own,
+               const GeometryInstance& instance) {
+  EmbreeScene::State::Mesh& mesh = *state.meshes[instance.mesh_number];
   if (!mesh.tree) {
-    mesh.tree = new_tree(device, state.options, false);
-    attach_triangles(state, mesh.tree.get(), 0, instance, mesh.triangles);
-    commit(device, mesh.tree.get());
+    const bool part_changes = state.options.changing && !state.numbers.empty();
+    mesh.tree = new_tree(state.device, state.options, part_changes);
   }
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, mesh.tree.get());
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &instance.to_world);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(state.top.get(), geometry, number);
-  rtcReleaseGeometry(geometry);
-  check(device, "adding an instance");
+  const auto [known, is_new] = mesh.numbers.try_emplace(instance.mesh, 0);
+  if (is_new) {
+    if (mesh.free.empty()) {
+      mesh.free.push_back(static_cast<std::uint32_t>(mesh.pieces.size()));
+      mesh.pieces.emplace_back();
+    }
+    known->second = mesh.free.back();
+    mesh.free.pop_back();
+    attach_triangles(state, mesh.tree.get(), known->second, instance,
+                     mesh.pieces[known->second].triangles);
+  }
+  EmbreeScene::State::Piece& piece = mesh.pieces[known->second];
+  ++piece.uses;
+  own.shared = &piece.triangles;
+  own.piece = instance.mesh;
+  own.mesh = instance.mesh_number;
+  own.to_world = instance.to_world;
+}
+
+void remove_piece(EmbreeScene::State& state, const EmbreeScene::State::Instance& own) {
+  EmbreeScene::State::Mesh& mesh = *state.meshes[own.mesh];
+  const auto known = mesh.numbers.find(own.piece);
+  EmbreeScene::State::Piece& piece = mesh.pieces[known->second];
+  if (--piece.uses > 0) return;
+  rtcDetachGeometry(mesh.tree.get(), known->second);
+  piece = {};
+  mesh.free.push_back(known->second);
+  mesh.numbers.erase(known);
+}
+
+// Takes Embree's instances of a mesh away.
+void part(EmbreeScene::State& state, const EmbreeScene::State::Mesh& mesh) {
+  for (const std::uint32_t i : mesh.instances) {
+    EmbreeScene::State::Instance& own = state.instances[i];
+    if (own.leads) rtcDetachGeometry(state.top.get(), i);
+    own.leads = false;
+    if (!state.joined.empty()) state.joined[i].clear();
+  }
+}
+
+// Makes an instance of Embree's of all that is the same one in the whole scene.
+void join(EmbreeScene::State& state, EmbreeScene::State::Mesh& mesh) {
+  commit(state.device, mesh.tree.get());
+  const auto whole = [&](std::uint32_t i) {
+    return state.numbers.empty() ? i : state.numbers[i].instance;
+  };
+  std::sort(mesh.instances.begin(), mesh.instances.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(whole(a), a) < std::pair(whole(b), b);
+  });
+  std::uint32_t leader = kMiss;
+  for (const std::uint32_t i : mesh.instances) {
+    EmbreeScene::State::Instance& own = state.instances[i];
+    if (leader == kMiss || whole(i) != whole(leader)) {
+      leader = i;
+      own.leads = true;
+      RTCGeometry geometry = rtcNewGeometry(state.device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(geometry, mesh.tree.get());
+      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &own.to_world);
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometryByID(state.top.get(), geometry, i);
+      rtcReleaseGeometry(geometry);
+      if (!state.joined.empty()) state.joined[i].assign(mesh.pieces.size(), kMiss);
+    }
+    if (!state.joined.empty()) state.joined[leader][mesh.numbers.at(own.piece)] = i;
+  }
+  check(state.device, "adding an instance");
+}
+
+bool is_empty(const GeometryInstance& instance) {
+  return instance.mesh == nullptr || instance.mesh->triangles.empty();
 }
 
 void attach(EmbreeScene::State& state, unsigned number, const GeometryInstance& instance) {
-  if (instance.mesh == nullptr || instance.mesh->triangles.empty()) return;
   EmbreeScene::State::Instance& own = state.instances[number];
-  if (own.attached) return;
+  if (is_empty(instance) || own.attached) return;
   own.attached = true;
   if (instance.instanced) {
-    own.mesh = instance.mesh_number;
-    own.to_world = instance.to_world;
-    attach_instance(state, number, instance);
+    add_piece(state, own, instance);
+    state.meshes[own.mesh]->instances.push_back(number);
+  } else if (!instance.mesh->has_triangles()) {
+    attach_splats(state, state.top.get(), number, instance, own.triangles);
   } else {
-    own.mesh = kMiss;
-    if (!instance.mesh->has_triangles())
-      attach_splats(state, state.top.get(), number, instance, own.triangles);
-    else
-      attach_triangles(state, state.top.get(), number, instance, own.triangles);
+    attach_triangles(state, state.top.get(), number, instance, own.triangles);
   }
 }
 
 void detach(EmbreeScene::State& state, unsigned number) {
   EmbreeScene::State::Instance& own = state.instances[number];
   if (!own.attached) return;
-  rtcDetachGeometry(state.top.get(), number);
-  if (own.mesh != kMiss) state.meshes[own.mesh] = {};  // Embree keeps it for other instances
+  if (own.mesh != kMiss) {
+    remove_piece(state, own);
+  } else {
+    rtcDetachGeometry(state.top.get(), number);
+  }
   own = {};
+}
+
+// The shared meshes that have or get one of these instances, in order.
+std::vector<std::uint32_t> changed_meshes(EmbreeScene::State& state,
+                                          std::span<const std::uint32_t> changed,
+                                          std::span<const GeometryInstance> instances) {
+  std::vector<std::uint32_t> meshes;
+  for (const std::uint32_t i : changed) {
+    if (state.instances[i].mesh != kMiss) meshes.push_back(state.instances[i].mesh);
+    if (!is_empty(instances[i]) && instances[i].instanced)
+      meshes.push_back(instances[i].mesh_number);
+  }
+  std::sort(meshes.begin(), meshes.end());
+  meshes.erase(std::unique(meshes.begin(), meshes.end()), meshes.end());
+  if (!meshes.empty() && meshes.back() >= state.meshes.size())
+    state.meshes.resize(meshes.back() + std::size_t{1});
+  for (const std::uint32_t mesh : meshes) {
+    if (!state.meshes[mesh]) state.meshes[mesh] = std::make_unique<EmbreeScene::State::Mesh>();
+  }
+  return meshes;
 }
 
 }  // namespace
@@ -195,12 +275,25 @@ void EmbreeScene::change(std::span<const std::uint32_t> changed,
   const std::uint64_t before = state.common.memory();
   state.numbers = numbers;
   state.instances.resize(instances.size());
+  if (!numbers.empty()) state.joined.resize(instances.size());
+  const std::vector<std::uint32_t> meshes = changed_meshes(state, changed, instances);
+  for (const std::uint32_t mesh : meshes) part(state, *state.meshes[mesh]);
   for (const std::uint32_t i : changed) detach(state, i);
+  for (const std::uint32_t mesh : meshes)
+    std::erase_if(state.meshes[mesh]->instances,
+                  [&](std::uint32_t i) { return !state.instances[i].attached; });
   for (const std::uint32_t i : changed) attach(state, i, instances[i]);
+  for (const std::uint32_t mesh : meshes) {
+    if (state.meshes[mesh]->instances.empty()) {
+      state.meshes[mesh] = nullptr;
+    } else {
+      join(state, *state.meshes[mesh]);
+    }
+  }
   commit(state.device, state.top.get());
   has_see_through_ = has_instances_ = has_splats_ = false;
   for (const GeometryInstance& instance : instances) {
-    if (instance.mesh == nullptr || instance.mesh->triangles.empty()) continue;
+    if (is_empty(instance)) continue;
     has_see_through_ = has_see_through_ || instance.see_through;
     has_instances_ = has_instances_ || instance.instanced;
     has_splats_ = has_splats_ || !instance.mesh->has_triangles();

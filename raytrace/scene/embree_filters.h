@@ -27,7 +27,7 @@ struct Query {
   Context context;
   SeeThrough* passed = nullptr;
   Nearest* nearest = nullptr;
-  std::span<const GeometryNumbers> numbers = {};  // by which the nearest is chosen
+  const EmbreeScene::State* scene = nullptr;
 };
 
 // Filter of queries for nearest hits. Refuses every hit, so that Embree reports all, whatever their

@@ -3,9 +3,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #if __has_include(<embree3/rtcore.h>)
@@ -57,19 +59,39 @@ struct EmbreeScene::State {
     std::shared_ptr<const std::vector<std::uint64_t>> opaque = {};
     Splats splats = {};  // instead of triangles
   };
-  struct Mesh {
+  // A piece of a mesh that is reached through transforms; the whole one where a scene is no part.
+  struct Piece {
     Triangles triangles = {};
+    std::uint32_t uses = 0;  // by instances; 0: the geometry is free
+  };
+  // All its pieces that are there: one tree.
+  struct Mesh {
+    std::deque<Piece> pieces = {};  // element i: geometry i of the tree; they stay where they are
+    std::unordered_map<const scenes::Mesh*, std::uint32_t> numbers = {};  // of pieces
+    std::vector<std::uint32_t> free = {};                                 // pieces
+    std::vector<std::uint32_t> instances = {};                            // that place a piece
     Tree tree = {};
   };
   struct Instance {
-    Triangles triangles = {};  // where it has a mesh of its own
-    std::uint32_t mesh = 0;    // otherwise; kMiss: there is none
+    Triangles triangles = {};           // where it has a mesh of its own
+    const Triangles* shared = nullptr;  // otherwise, of its piece
+    const scenes::Mesh* piece = nullptr;
+    std::uint32_t mesh = kMiss;
     glm::mat4x3 to_world{1.0F};
     bool attached = false;
+    bool leads = false;  // Embree's instance has its number
   };
-  std::vector<Mesh> meshes = {};         // element i: of mesh i where it is shared
-  std::vector<Instance> instances = {};  // element i: of instance i
+  std::vector<std::unique_ptr<Mesh>> meshes = {};  // element i: of mesh i where it is shared
+  std::vector<Instance> instances = {};            // element i: of instance i
+  // Element i: which of our instances each geometry of Embree's instance i is. Of scenes that are
+  // parts, else empty: instance i itself.
+  std::vector<std::vector<std::uint32_t>> joined = {};
   Tree top = {};
+
+  // Which of our instances geometry `geometry` of Embree's instance is.
+  std::uint32_t instance_of(std::uint32_t instance, std::uint32_t geometry) const {
+    return joined.empty() ? instance : joined[instance][geometry];
+  }
 };
 
 }  // namespace delray::raytrace

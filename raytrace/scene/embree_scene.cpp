@@ -29,7 +29,8 @@ static_assert(sizeof(ShadowPacket) == sizeof(RTCRay16) &&
               offsetof(ShadowPacket, far) == offsetof(RTCRay16, tfar));
 static_assert(kMiss == RTC_INVALID_GEOMETRY_ID);
 
-void start(Query& query, bool coherent) {
+void start(Query& query, const EmbreeScene::State& scene, bool coherent) {
+  query.scene = &scene;
 #if RTC_VERSION_MAJOR >= 4
   rtcInitRayQueryContext(&query.context);
   (void)coherent;
@@ -99,9 +100,8 @@ void trace(const EmbreeScene::State& scene, const ActiveRays& active, Packet& pa
 // With `nearest` hits are found there instead of in the ray or packet.
 void find_hits(const EmbreeScene::State& scene, Ray& ray, Nearest* nearest = nullptr) {
   Query query;
-  start(query, false);
+  start(query, scene, false);
   query.nearest = nearest;
-  query.numbers = scene.numbers;
   RTCScene tree = scene.top.get();
   auto* embree_ray = reinterpret_cast<RTCRayHit*>(&ray);
 #if RTC_VERSION_MAJOR >= 4
@@ -111,14 +111,16 @@ void find_hits(const EmbreeScene::State& scene, Ray& ray, Nearest* nearest = nul
   if (nearest != nullptr) query.context.filter = find_least;
   rtcIntersect1(tree, &query.context, embree_ray);
 #endif
+  if (nearest != nullptr || scene.joined.empty()) return;
+  if (ray.triangle != kMiss && ray.instance != kMiss)
+    ray.instance = scene.instance_of(ray.instance, ray.geometry);
 }
 
 void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPacket& packet,
                bool coherent, Nearest* nearest = nullptr) {
   Query query;
-  start(query, coherent);
+  start(query, scene, coherent);
   query.nearest = nearest;
-  query.numbers = scene.numbers;
 #if RTC_VERSION_MAJOR >= 4
   RTCIntersectArguments argument = intersect_arguments(query, coherent);
 #else
@@ -126,6 +128,11 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
   Context& argument = query.context;
 #endif
   trace(scene, active, packet, argument, rtcIntersect16, rtcIntersect8, rtcIntersect4);
+  if (nearest != nullptr || scene.joined.empty()) return;
+  for (int i = 0; i < kPacketRays; ++i) {
+    if (active.ray[i] == 0 || packet.triangle[i] == kMiss || packet.instance[i] == kMiss) continue;
+    packet.instance[i] = scene.instance_of(packet.instance[i], packet.geometry[i]);
+  }
 }
 
 // A ray's line, and what it hit.
@@ -138,9 +145,8 @@ struct EdgeHit {
 // and v yet, always.
 bool is_near_edge(const EmbreeScene::State& scene, const EdgeHit& at) {
   const EmbreeScene::State::Instance& own = scene.instances[at.hit.instance];
-  const bool is_shared = own.mesh != kMiss;
-  const EmbreeScene::State::Triangles& triangles =
-      is_shared ? scene.meshes[own.mesh].triangles : own.triangles;
+  const bool is_shared = own.shared != nullptr;
+  const EmbreeScene::State::Triangles& triangles = is_shared ? *own.shared : own.triangles;
   const float least = distance_from_edges(at.hit.u, at.hit.v);
   if (triangles.corners == nullptr || least < kNearEdge) return least < kNearEdge;
   const glm::uvec3& corners = triangles.corners[at.hit.triangle];
@@ -264,7 +270,7 @@ void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool co
 
 bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {
   Query query;
-  start(query, false);
+  start(query, *state_, false);
   query.passed = &passed;
   passed.count = 0;
   ray.id = 0;
@@ -283,7 +289,7 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
   Query query;
   // Embree 3.13.5 with AVX-512 loops forever on coherent occlusion packets that meet an instance.
   coherent = coherent && !has_instances_;
-  start(query, coherent);
+  start(query, *state_, coherent);
   query.passed = passed.data();
   for (int i = 0; i < kPacketRays; ++i) {
     packet.id[i] = static_cast<std::uint32_t>(i);

@@ -51,7 +51,8 @@ class EmbreeScene {
   // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
   // Where it is part of a scene, `numbers` has an element for each instance and outlives the
   // object: ties are broken by what they are in the whole scene, hits still tell what they are in
-  // the part.
+  // the part. There several instances may be pieces of one that is placed by a transform: with
+  // other meshes, but the same mesh_number and number in the whole scene.
   EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options,
               const EmbreeDevice& device, std::span<const GeometryNumbers> numbers = {});
   // On a device of its own.
@@ -62,8 +63,8 @@ class EmbreeScene {
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
 
   // Elements `changed` of `instances` are others than before; those with a null mesh are taken
-  // away. `instances` and `numbers` are all of them, and may lie elsewhere than before. Instances
-  // with the same mesh come and go together. O(n log n) of the triangles that come, with
+  // away. `instances` and `numbers` are all of them, and may lie elsewhere than before. Those with
+  // the same mesh come and go together. O(n log n) of the triangles that come, with
   // BuildOptions::changing, else of all. REQUIRES: no rays meanwhile.
   void change(std::span<const std::uint32_t> changed, std::span<const GeometryInstance> instances,
               std::span<const GeometryNumbers> numbers);

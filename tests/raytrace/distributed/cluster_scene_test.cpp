@@ -38,8 +38,7 @@ Clusters clusters_of(const scenes::Scene& scene, const shading::Shader& shader) 
 }
 
 // What rays hit in the whole scene, and how many layers light passes.
-std::vector<std::string> hits(const ClusterScene& scene, const shading::Shader& shader) {
-  const LocalScene local = scene.local(shader);
+std::vector<std::string> hits(const EmbreeScene& embree, std::span<const GeometryNumbers> numbers) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> x(-1.0F, 5.0F), y(-3.0F, 3.0F), slant(0.01F, 0.3F);
   std::vector<std::string> all;
@@ -52,11 +51,11 @@ std::vector<std::string> hits(const ClusterScene& scene, const shading::Shader& 
     ray.triangle = ray.geometry = ray.instance = kMiss;
     Ray shadow = ray;
     SeeThrough passed;
-    std::string result = local.embree.occluded(shadow, passed) ? "dark" : "lit";
+    std::string result = embree.occluded(shadow, passed) ? "dark" : "lit";
     result += ' ' + std::to_string(passed.count);
-    local.embree.intersect(ray);
+    embree.intersect(ray);
     if (ray.triangle != kMiss) {
-      const Hit hit = in_whole_scene(hit_of(ray), local.numbers);
+      const Hit hit = in_whole_scene(hit_of(ray), numbers);
       result += ' ' + std::to_string(hit.instance) + ' ' + std::to_string(hit.triangle) + ' ' +
                 std::to_string(hit.distance);
     }
@@ -65,11 +64,18 @@ std::vector<std::string> hits(const ClusterScene& scene, const shading::Shader& 
   return all;
 }
 
+std::vector<std::string> hits(const ClusterScene& scene, const shading::Shader& shader) {
+  const LocalScene local = scene.local(shader);
+  return hits(local.embree, local.numbers);
+}
+
 TEST(ClusterScene, ChangesToWhatASceneOfTheSameClustersIs) {
   const scenes::Scene scene = spheres();
   const shading::Shader shader = shading::make_shader(scene);
   const Clusters clusters = clusters_of(scene, shader);
   ASSERT_GT(clusters.size(), 20U);
+  const std::vector<GeometryInstance> instances = make_instances(scene, shader, true);
+  const std::vector<std::string> whole = hits(EmbreeScene(instances, {}), {});
   for (const bool changing : {true, false}) {
     BuildOptions options;
     options.changing = changing;
@@ -85,6 +91,9 @@ TEST(ClusterScene, ChangesToWhatASceneOfTheSameClustersIs) {
       scene_in_change.change(some);
       const std::vector<std::string> after = hits(scene_in_change, shader);
       EXPECT_NE(after, before) << turn;
+      if (turn == 4) {
+        EXPECT_EQ(after, whole);
+      }
       EXPECT_EQ(after, hits(ClusterScene(some, {}, device), shader)) << turn;
       before = after;
     }
