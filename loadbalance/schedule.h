@@ -17,6 +17,8 @@
 
 namespace delray::loadbalance {
 
+class DivisibleWork;
+
 // Options of a schedule.
 struct ScheduleOptions {
   // Threads of this rank; 0: as many as its arena has. One on the simulated machine.
@@ -35,9 +37,12 @@ struct ScheduleOptions {
   double share = 0.25;
   int fan_out = 4;         // hierarchical: ranks below a master, at most; >= 2
   std::uint64_t seed = 1;  // random
-  // The tasks that this rank begins with, with static and both kinds of stealing; each task is in
+  // The tasks that this rank begins with, with static and all kinds of stealing; each task is in
   // the list of exactly one rank. By default as many consecutive tasks for each.
   std::optional<std::vector<TaskRange>> initial;
+  // Of schedules that divide tasks: the units of tasks, this rank's. The task function only begins
+  // a task then, on thread 0, and its units wait in here. Null: tasks stay whole.
+  DivisibleWork* divisible = nullptr;
 };
 
 // A thread of a rank from `begin` to `end`: doing `tasks` tasks one after the other, handling
@@ -56,6 +61,7 @@ struct ScheduleCounts {
   std::uint64_t requests = 0;      // messages that ask for tasks or for a load, sent
   std::uint64_t steals = 0;        // messages with tasks of another rank's share, received
   std::uint64_t tasks_stolen = 0;  // in those
+  std::uint64_t units_stolen = 0;  // in those, of tasks that were begun elsewhere
   std::uint64_t messages = 0, bytes_sent = 0;  // of the schedule, sent to other ranks
   double begin = 0, end = 0;                   // Communicator::seconds at the call and the return
   double busy = 0, idle = 0;                   // seconds at tasks and waiting, summed over threads
@@ -87,6 +93,7 @@ struct Schedule {
   const char* group;        // of schedules that work alike; reports show these in one colour
   bool has_master = false;  // some ranks hand out tasks: ScheduleOptions::master_works
   bool begins_with_shares = false;  // ScheduleOptions::initial
+  bool divides = false;             // ScheduleOptions::divisible
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

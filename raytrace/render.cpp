@@ -17,6 +17,7 @@
 #include "parallel/arena.h"
 #include "raytrace/distributed/collect_tiles.h"
 #include "raytrace/distributed/distributed_tracer.h"
+#include "raytrace/distributed/ray_pool.h"
 #include "raytrace/distributed/serving_communicator.h"
 #include "raytrace/distributed/tile_plan.h"
 #include "raytrace/distributed/tile_shares.h"
@@ -63,13 +64,12 @@ void check(const scenes::Camera& camera) {
   }
 }
 
-std::uint64_t sum(const RayCounts& rays) { return rays.primary + rays.shadow + rays.secondary; }
-
 // The tiles that this rank gets, and what the schedule says of it.
 struct Traced {
   std::vector<TilePixels> tiles;
   loadbalance::RankReport report;
   RoutingCounts routing = {};
+  RayCounts rays = {};
   double busy = 0.0;  // seconds of processor time
 };
 
@@ -96,8 +96,28 @@ FirstHits::Made first_hits(const comm::Communicator& communicator, const Tracer*
                          options.primary == Primary::raster_always, trials);
 }
 
+// Of schedules that divide tiles.
+Traced trace_pool(comm::Communicator& communicator, const TiledFrame& frame,
+                  const loadbalance::Schedule& schedule, loadbalance::ScheduleOptions how) {
+  parallel::Progress* const progress = frame.options.progress;
+  if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
+  RayPool pool(communicator, frame);
+  how.divisible = &pool;
+  Traced traced;
+  traced.report = schedule.run(communicator, frame.tiles.grid(), how, [&](std::uint32_t tile, int) {
+    pool.begin(tile);
+    if (progress != nullptr) progress->advance();
+  });
+  traced.tiles = std::move(pool.tiles());
+  traced.rays = pool.rays();
+  traced.busy = pool.busy();
+  return traced;
+}
+
 Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
              const loadbalance::ScheduleOptions& how) {
+  const loadbalance::Schedule& schedule = *loadbalance::find_schedule(frame.options.schedule);
+  if (schedule.divides) return trace_pool(communicator, frame, schedule, how);
   parallel::Progress* const progress = frame.options.progress;
   // Ranks of one process may have one progress in common.
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
@@ -110,16 +130,16 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
     OfThread& mine = by_thread[thread];
     if (!mine.integrator) mine.integrator = frame.integrators.take();
     const TilePixels& done = mine.tiles.emplace_back(sample_tile(frame, tile, *mine.integrator));
-    if (thread == 0) communicator.work(comm::Work::rays, sum(done.rays));
+    if (thread == 0) communicator.work(comm::Work::rays, done.rays.sent());
     if (progress != nullptr) progress->advance();
   };
   Traced traced;
-  traced.report = loadbalance::find_schedule(frame.options.schedule)
-                      ->run(communicator, frame.tiles.grid(), how, trace_tile);
+  traced.report = schedule.run(communicator, frame.tiles.grid(), how, trace_tile);
   for (std::size_t thread = 0; thread < by_thread.size(); ++thread) {
     for (TilePixels& tile : by_thread[thread].tiles) {
-      if (thread > 0) communicator.work(comm::Work::rays, sum(tile.rays));
+      if (thread > 0) communicator.work(comm::Work::rays, tile.rays.sent());
       traced.busy += tile.busy;
+      traced.rays += tile.rays;
       traced.tiles.push_back(std::move(tile));
     }
   }
@@ -156,6 +176,7 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedSc
                       });
   tracer.finish();
   traced.tiles = std::move(tracer.tiles());
+  for (const TilePixels& tile : traced.tiles) traced.rays += tile.rays;
   planned = {tracer.take_planned(), frame.tiles.frame, frame.tiles.width};
   traced.routing = tracer.counts();
   traced.busy = tracer.busy();
@@ -164,7 +185,7 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedSc
 
 RankStatistics statistics_of(Traced& traced, const comm::Totals& totals) {
   RankStatistics mine;
-  for (const TilePixels& tile : traced.tiles) mine.rays += tile.rays;
+  mine.rays = traced.rays;
   mine.busy = traced.busy;
   mine.rays_sent = traced.routing.rays_sent;
   mine.answers_sent = traced.routing.answers_sent;
@@ -177,6 +198,7 @@ RankStatistics statistics_of(Traced& traced, const comm::Totals& totals) {
   mine.requests = traced.report.requests;
   mine.steals = traced.report.steals;
   mine.tasks_stolen = traced.report.tasks_stolen;
+  mine.rays_stolen = traced.report.units_stolen;
   mine.bytes_sent = totals.bytes_sent;
   mine.bytes_received = totals.bytes_received;
   mine.messages = totals.messages_sent;
@@ -211,7 +233,7 @@ void summarize(std::vector<RankStatistics>&& ranks, Statistics& statistics) {
   std::vector<double> rays;
   for (const RankStatistics& rank : ranks) {
     statistics.rays += rank.rays;
-    rays.push_back(static_cast<double>(sum(rank.rays)));
+    rays.push_back(static_cast<double>(rank.rays.sent()));
   }
   statistics.imbalance_rays = loadbalance::imbalance(rays);
   statistics.ranks = std::move(ranks);
@@ -230,6 +252,7 @@ void RankStatistics::operator+=(RankStatistics&& more) {
   requests += more.requests;
   steals += more.steals;
   tasks_stolen += more.tasks_stolen;
+  rays_stolen += more.rays_stolen;
   rays_sent += more.rays_sent;
   answers_sent += more.answers_sent;
   tests += more.tests;
@@ -257,8 +280,7 @@ void Statistics::operator+=(Statistics&& more) {
   std::vector<double> of_ranks;
   for (std::size_t r = 0; r < ranks.size(); ++r) {
     ranks[r] += std::move(more.ranks[r]);
-    const RayCounts& sent = ranks[r].rays;
-    of_ranks.push_back(static_cast<double>(sent.primary + sent.shadow + sent.secondary));
+    of_ranks.push_back(static_cast<double>(ranks[r].rays.sent()));
   }
   imbalance_rays = loadbalance::imbalance(of_ranks);
 }

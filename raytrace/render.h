@@ -86,7 +86,8 @@ struct RankCounts {
   std::uint64_t tasks = 0;
   RayCounts rays;
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
-  std::uint64_t requests = 0, steals = 0, tasks_stolen = 0;        // of the schedule
+  // Of the schedule. `rays_stolen`: of tiles that other ranks had begun.
+  std::uint64_t requests = 0, steals = 0, tasks_stolen = 0, rays_stolen = 0;
   // Of a scene that is shared out: rays sent to other ranks and answers sent back; rays against
   // clusters; clusters that came from another rank, with their bytes, and that were dropped again
   // or moved to a neighbour for good. Of any scene: the most bytes of geometry and acceleration
@@ -153,6 +154,10 @@ int tile_side(const RenderOptions& options);
 // How so many tiles are handed out to ranks with so many threads, but for the shares that they
 // begin with.
 loadbalance::ScheduleOptions tile_schedule(std::uint32_t tiles, int ranks, int threads);
+
+// Bytes that a ray of a tile in progress takes to another rank, about, and what it finds to its
+// own.
+inline constexpr std::uint64_t kMovedRayBytes = 110, kMovedResultBytes = 20;
 
 // Renders frames of one scene, each with shares of tiles by what they cost in the one before. One
 // per rank.

@@ -56,6 +56,20 @@ constexpr std::array kSchedules = {
         .run = &internal::neighbour_stealing,
         .group = "stealing",
         .begins_with_shares = true},
+    Schedule{
+        .name = "ray-stealing",
+        .description = "stealing of pending rays: tiles in progress are divided, too (Badouel)",
+        .run = &internal::ray_stealing,
+        .group = "stealing",
+        .begins_with_shares = true,
+        .divides = true},
+    Schedule{
+        .name = "ray-neighbours",
+        .description = "neighbour-stealing of pending rays, of tiles in progress, too (Heirich)",
+        .run = &internal::ray_neighbours,
+        .group = "stealing",
+        .begins_with_shares = true,
+        .divides = true},
 };
 
 }  // namespace

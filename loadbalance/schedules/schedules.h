@@ -57,4 +57,12 @@ RankReport half_stealing(comm::Communicator& communicator, const TaskGrid& tasks
 RankReport neighbour_stealing(comm::Communicator& communicator, const TaskGrid& tasks,
                               const ScheduleOptions& options, TaskFunction work);
 
+// Stealing of pending rays (Badouel et al. 1990; Heirich and Arvo 1997): of work that is divisible
+// loads are units that wait, and units of tasks that are begun move as tasks do. Whom a rank asks
+// is as with `stealing` and with `neighbour-stealing`, which other work goes by.
+RankReport ray_stealing(comm::Communicator& communicator, const TaskGrid& tasks,
+                        const ScheduleOptions& options, TaskFunction work);
+RankReport ray_neighbours(comm::Communicator& communicator, const TaskGrid& tasks,
+                          const ScheduleOptions& options, TaskFunction work);
+
 }  // namespace delray::loadbalance::internal

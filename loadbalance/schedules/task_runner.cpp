@@ -98,7 +98,7 @@ comm::Envelope TaskRunner::wait(int from_or_any, comm::Tag tag) {
 
 void TaskRunner::send(int to, comm::Tag tag, comm::Buffer&& message) {
   ++report.messages;
-  report.bytes_sent += message.size();
+  report.bytes_sent += message.counted_bytes();
   communicator_.send(to, tag, std::move(message));
 }
 

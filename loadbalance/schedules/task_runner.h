@@ -39,9 +39,10 @@ class TaskRunner {
   bool run_one();
   // Waits until there is such a message. Throws as run_one.
   comm::Envelope wait(int from_or_any, comm::Tag tag);
-  // The time since the last call went to messages, or to waiting.
+  // The time since the last call went to messages, to waiting, or to tasks that were begun before.
   void served() { mark(0, Interval::Kind::serve); }
   void waited() { mark(0, Interval::Kind::wait); }
+  void worked() { mark(0, Interval::Kind::work); }
   void send(int to, comm::Tag tag, comm::Buffer&& message);
 
   // Does what waits and returns when all threads have done their tasks. The last call.

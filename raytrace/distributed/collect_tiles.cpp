@@ -16,8 +16,7 @@ namespace {
 using geometry::Rect;
 
 TileCost cost_of(const TilePixels& tile) {
-  return {tile.tile, tile.pixels, tile.rays.primary + tile.rays.shadow + tile.rays.secondary,
-          tile.busy};
+  return {tile.tile, tile.pixels, tile.rays.sent(), tile.busy};
 }
 
 // `window` is what the image shows of the frame.

@@ -257,7 +257,7 @@ DistributedTracer::Advanced DistributedTracer::advance(std::uint32_t index) {
       advanced.tests += intersect_at_home(home, address, integrator.batch(), advanced.travelling);
       continue;
     }
-    add_samples(frame_, integrator, pixel_task.task, pixel_task.tile->pixels);
+    add_samples(frame_, integrator.samples(), pixel_task.task, pixel_task.tile->pixels);
     advanced.rays += integrator.rays();
     advanced.rays.surplus += surplus_of(frame_, pixel_task.tile->pixels.rect, pixel_task.task);
     pixel_task.started = false;

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "raytrace/integrators/enqueue.h"
 #include "raytrace/integrators/lane_sums.h"
+#include "raytrace/integrators/waiting_rays.h"
 #include "raytrace/scene/same_material.h"
 
 namespace delray::raytrace {
@@ -39,6 +40,26 @@ void DirectLighting::begin() {
     lanes.bundle = Bundle::straight;
     lanes.has_throughput = false;
   }
+}
+
+void DirectLighting::count_waiting(std::span<std::uint32_t> by_block) {
+  count_rays(batch_.rays, enqueued_, by_block);
+  count_rays(batch_.shadows, enqueued_lights_, by_block);
+}
+
+RayCounts DirectLighting::write_waiting(std::span<const std::uint8_t> moved, RayWriter& to) {
+  RayCounts counts;
+  write_rays(batch_.rays, enqueued_, moved, to, [&](const RayLanes& lanes, int i) {
+    ++(depth_of(lanes, i) == context_.options.depth ? counts.primary : counts.secondary);
+  });
+  write_rays(batch_.shadows, enqueued_lights_, moved, to,
+             [&](const Light&, int) { ++counts.shadow; });
+  return counts;
+}
+
+void DirectLighting::read_waiting(RayReader& from) {
+  read_rays(from, batch_.rays, enqueued_);
+  read_rays(from, batch_.shadows, enqueued_lights_);
 }
 
 void DirectLighting::shade() {

@@ -35,6 +35,20 @@ struct RayLanes {
   glm::vec3 throughput_of(int i) const {
     return has_throughput ? throughput.get(i) : glm::vec3(1.0F);
   }
+  template <class Visitor>
+  void visit(Visitor& to) {  // waiting_rays.h
+    to.value(whole);
+    to.value(block);
+    to.value(bundle);
+    to.value(has_throughput);
+    if (has_throughput) {
+      for (float* const field : {throughput.x.lane, throughput.y.lane, throughput.z.lane})
+        to.lanes(field);
+    }
+    if (whole) return;
+    to.lanes(depth);
+    for (std::uint32_t* const field : {pixel, branch, layers, instance, triangle}) to.lanes(field);
+  }
 };
 
 // A ray to be put into a group. `direction` may have any length, `view` is the unit vector back.
@@ -104,10 +118,26 @@ class DirectLighting : public WavefrontIntegrator {
     std::uint32_t block = 0;
     alignas(64) std::uint32_t pixel[kPacketRays];
     shading::Vectors16 reflected;
+
+    std::uint32_t pixel_of(int i) const {
+      return whole ? block * kPacketRays + static_cast<std::uint32_t>(i) : pixel[i];
+    }
+    template <class Visitor>
+    void visit(Visitor& to) {
+      to.value(source);
+      to.value(whole);
+      to.value(block);
+      for (float* const field : {reflected.x.lane, reflected.y.lane, reflected.z.lane})
+        to.lanes(field);
+      if (!whole) to.value(pixel);  // of all lanes: those of the source's other groups look here
+    }
   };
 
   void begin() final;
   void shade() final;
+  void count_waiting(std::span<std::uint32_t> by_block) final;
+  RayCounts write_waiting(std::span<const std::uint8_t> moved, RayWriter& to) final;
+  void read_waiting(RayReader& from) final;
   void add_lights();
   void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
   shading::LaneMask show_environment(const RayGroup& group, const RayLanes& lanes);

@@ -19,6 +19,7 @@
 #include "raytrace/integrators/path_queue.h"
 #include "raytrace/integrators/path_samples.h"
 #include "raytrace/integrators/path_vertices.h"
+#include "raytrace/integrators/waiting_rays.h"
 #include "raytrace/sampling/bsdf.h"
 #include "raytrace/sampling/light_table.h"
 #include "raytrace/sampling/warp.h"
@@ -51,6 +52,24 @@ class Path final : public WavefrontIntegrator {
 
  private:
   void begin() override { queue_.begin(); }
+
+  void count_waiting(std::span<std::uint32_t> by_block) override {
+    count_rays(batch_.rays, queue_.waiting(), by_block);
+    count_rays(batch_.shadows, queue_.waiting_lights(), by_block);
+  }
+  RayCounts write_waiting(std::span<const std::uint8_t> moved, RayWriter& to) override {
+    RayCounts counts;
+    write_rays(batch_.rays, queue_.waiting(), moved, to, [&](const PathLanes& lanes, int i) {
+      ++(lanes.is_primary(i) ? counts.primary : counts.secondary);
+    });
+    write_rays(batch_.shadows, queue_.waiting_lights(), moved, to,
+               [&](const LightLanes&, int) { ++counts.shadow; });
+    return counts;
+  }
+  void read_waiting(RayReader& from) override {
+    read_rays(from, batch_.rays, queue_.waiting());
+    read_rays(from, batch_.shadows, queue_.waiting_lights());
+  }
 
   void shade() override {
     queue_.begin_generation();

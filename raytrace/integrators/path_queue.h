@@ -27,6 +27,9 @@ class PathQueue {
   PathLanes& paths(std::size_t group) { return intersected_[group]; }
   Groups<PathLanes>& paths() { return intersected_; }
   const LightLanes& lights(std::size_t group) const { return intersected_lights_[group]; }
+  // Of groups that are not intersected yet.
+  Groups<PathLanes>& waiting() { return enqueued_; }
+  Groups<LightLanes>& waiting_lights() { return enqueued_lights_; }
 
   // Enqueues the ray of lane i behind the surface that it has met.
   void go_behind(const RayGroup& group, const PathLanes& lanes, int i, const Hit& hit);

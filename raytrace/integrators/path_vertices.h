@@ -27,12 +27,34 @@ struct PathLanes {
   alignas(64) std::uint32_t bounce[kPacketRays];
   alignas(64) std::uint32_t vertex[kPacketRays];  // surfaces met so far, layers among them
   alignas(64) std::uint32_t instance[kPacketRays], triangle[kPacketRays];  // left behind
+
+  std::uint32_t pixel_of(int i) const {
+    return whole ? block * kPacketRays + static_cast<std::uint32_t>(i) : pixel[i];
+  }
+  bool is_primary(int i) const { return whole || bounce[i] == 0; }
+  template <class Visitor>
+  void visit(Visitor& to) {  // waiting_rays.h
+    to.value(whole);
+    to.value(block);
+    if (whole) return;
+    for (float* const field : {throughput.x.lane, throughput.y.lane, throughput.z.lane, pdf.lane})
+      to.lanes(field);
+    for (std::uint32_t* const field : {pixel, bounce, vertex, instance, triangle}) to.lanes(field);
+  }
 };
 
 // State of shadow rays beside their geometry.
 struct LightLanes {
   shading::Vectors16 reflected;  // what is added if all of the light arrives
   alignas(64) std::uint32_t pixel[kPacketRays];
+
+  std::uint32_t pixel_of(int i) const { return pixel[i]; }
+  template <class Visitor>
+  void visit(Visitor& to) {
+    for (float* const field : {reflected.x.lane, reflected.y.lane, reflected.z.lane})
+      to.lanes(field);
+    to.lanes(pixel);
+  }
 };
 
 // Fields of rays that go on, in the order of path_fields and light_fields.

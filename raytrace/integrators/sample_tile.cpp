@@ -166,12 +166,12 @@ void finish_writes() {}
 
 }  // namespace
 
-void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
+void add_samples(const TiledFrame& frame, std::span<const SampleBlock> samples, const Task& task,
                  const TilePixels& pixels) {
   const float weight = 1.0F / static_cast<float>(samples_of(frame.options));
   const bool first = task.first_sample == frame.options.part.first_sample;
   const Rect& tile = pixels.rect;
-  const SampleBlock* block = integrator.samples().data();
+  const SampleBlock* block = samples.data();
   const bool past_caches = first && may_pass_caches(frame, pixels.colour);
   const Rect inside = geometry::intersection(task.pixels, tile);
   for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
@@ -211,7 +211,7 @@ TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
       for (; !integrator.done(); integrator.advance()) {
         intersect(*frame.tracer, frame.context.shader, integrator.batch());
       }
-      add_samples(frame, integrator, task, pixels);
+      add_samples(frame, integrator.samples(), task, pixels);
       pixels.rays += integrator.rays();
       pixels.rays.surplus += surplus_of(frame, pixels.rect, task);
     }

@@ -39,9 +39,9 @@ int samples_of(const RenderOptions& options);
 // How many pixels of a task are traced and belong to other tiles.
 std::uint64_t surplus_of(const TiledFrame& frame, const geometry::Rect& tile, const Task& task);
 
-// Adds what an integrator that is done has found to the pixels, but not its rays: tasks of a tile
+// Adds the samples of an integrator that is done to the pixels, but not its rays: tasks of a tile
 // may do so at the same time. Samples of a pixel have to be added in ascending order.
-void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
+void add_samples(const TiledFrame& frame, std::span<const SampleBlock> samples, const Task& task,
                  const TilePixels& pixels);
 
 // All samples, on the calling thread. `integrator` is of frame.integrators and at rest.

@@ -7,6 +7,7 @@
 
 #include "image/image.h"
 #include "raytrace/integrators/primary_rays.h"
+#include "raytrace/integrators/waiting_rays.h"
 #include "raytrace/sampling/samples.h"
 #include "raytrace/sampling/warp.h"
 
@@ -54,8 +55,6 @@ void WavefrontIntegrator::enqueue_primary_rays() {
   const bool lens = context_.view.lens_radius > 0.0F;
   const bool jittered =
       (positions_ == Positions::random || context_.scattered) && context_.samples > 1;
-  keys_.resize(static_cast<std::size_t>(task_.blocks()));
-  has_keys_.assign(keys_.size(), false);
   PrimaryPlaces places;
   std::size_t block = 0;
   for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
@@ -114,7 +113,7 @@ void WavefrontIntegrator::draw(const std::uint32_t* pixels, shading::LaneMask la
   }
 }
 
-void WavefrontIntegrator::start(const Task& task) {
+void WavefrontIntegrator::clear_for(const Task& task) {
   assert(task.pixels.x0 % kBlockSide == 0 && task.pixels.y0 % kBlockSide == 0);
   task_ = task;
   rays_ = {};
@@ -122,6 +121,12 @@ void WavefrontIntegrator::start(const Task& task) {
   next_.clear();
   samples_.resize(static_cast<std::size_t>(task.blocks()) * static_cast<std::size_t>(task.samples));
   for (SampleBlock& block : samples_) clear(block);
+  keys_.resize(static_cast<std::size_t>(task_.blocks()));
+  has_keys_.assign(keys_.size(), false);
+}
+
+void WavefrontIntegrator::start(const Task& task) {
+  clear_for(task);
   enqueue_primary_rays();
   begin();
   std::swap(batch_, next_);
@@ -131,6 +136,35 @@ void WavefrontIntegrator::advance() {
   next_.clear();
   shade();
   std::swap(batch_, next_);
+}
+
+std::vector<std::uint32_t> WavefrontIntegrator::waiting() {
+  std::vector<std::uint32_t> by_block(samples_.size(), 0);
+  count_waiting(by_block);
+  return by_block;
+}
+
+void WavefrontIntegrator::release(std::span<const std::uint8_t> moved, RayWriter& to) {
+  for (std::size_t b = 0; b < samples_.size(); ++b) {
+    to.value(moved[b]);
+    if (moved[b] != 0) to.value(samples_[b]);
+  }
+  const RayCounts counts = write_waiting(moved, to);
+  to.value(counts);
+  rays_ -= counts;
+}
+
+std::vector<std::uint8_t> WavefrontIntegrator::resume(const Task& task, RayReader& from) {
+  clear_for(task);
+  begin();
+  std::vector<std::uint8_t> moved(samples_.size());
+  for (std::size_t b = 0; b < samples_.size(); ++b) {
+    from.value(moved[b]);
+    if (moved[b] != 0) from.value(samples_[b]);
+  }
+  read_waiting(from);
+  from.value(rays_);
+  return moved;
 }
 
 }  // namespace delray::raytrace

@@ -44,6 +44,15 @@ struct RayCounts {
     rasterized += b.rasterized;
     return *this;
   }
+  RayCounts& operator-=(const RayCounts& b) {
+    primary -= b.primary;
+    shadow -= b.shadow;
+    secondary -= b.secondary;
+    surplus -= b.surplus;
+    rasterized -= b.rasterized;
+    return *this;
+  }
+  std::uint64_t sent() const { return primary + shadow + secondary; }
   bool operator==(const RayCounts&) const = default;
 };
 
@@ -86,6 +95,9 @@ struct SampleBlock {
                             // transparent; kEmptyDepth where there is none
 };
 
+class RayReader;
+class RayWriter;
+
 // Keeps its memory from task to task. Nothing in it depends on the task before.
 class WavefrontIntegrator {
  public:
@@ -98,6 +110,16 @@ class WavefrontIntegrator {
 
   // REQUIRES: all of batch() is intersected, and not done.
   void advance();
+
+  // Rays of each block of samples() that wait in batch(). REQUIRES: they are not intersected.
+  std::vector<std::uint32_t> waiting();
+  // Moves the samples of blocks b with moved[b] != 0, as far as they are, and their rays that wait
+  // to the end of a message (waiting_rays.h). These rays no longer count here. REQUIRES: as above.
+  void release(std::span<const std::uint8_t> moved, RayWriter& to);
+  // In place of start: goes on with what an integrator of the same frame has released. The rays
+  // that wait count from now on here. Returns the blocks as they were marked there. Throws
+  // comm::BadMessage.
+  std::vector<std::uint8_t> resume(const Task& task, RayReader& from);
 
   bool done() const { return batch_.empty(); }
   RayBatch& batch() { return batch_; }
@@ -118,6 +140,12 @@ class WavefrontIntegrator {
   // Shades the intersected batch_, adds to samples_ and enqueues into next_, which is empty.
   virtual void shade() = 0;
 
+  // Rays that wait in batch_: counted, moved to a message with their counts, read from one into
+  // batch_, where nothing is enqueued (waiting_rays.h).
+  virtual void count_waiting(std::span<std::uint32_t> by_block) = 0;
+  virtual RayCounts write_waiting(std::span<const std::uint8_t> moved, RayWriter& to) = 0;
+  virtual void read_waiting(RayReader& from) = 0;
+
   // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
   Sampler sampler(std::uint32_t pixel);
   // As sampler, for sixteen lanes, of which those in `lanes` are set.
@@ -130,6 +158,7 @@ class WavefrontIntegrator {
   RayCounts rays_;
 
  private:
+  void clear_for(const Task& task);
   void enqueue_primary_rays();
   const PixelKeys& keys(std::uint32_t block);
 
