@@ -90,9 +90,9 @@ std::span<const RefinementMethod> refinement_methods();
 // Segments that cross get a point there; parts of segments that lie upon each other count once.
 // Expected O(n log n) for n points of the result.
 //
-// Throws std::invalid_argument for coordinates that are not finite, segments that join no rows,
-// options out of range, and where segments enclose nothing; std::length_error beyond max_points;
-// parallel::Interrupted.
+// Throws std::invalid_argument for coordinates that are not finite, above 1e60 or all below 1e-60,
+// segments that join no rows, options out of range, and where segments enclose nothing;
+// std::length_error beyond max_points; parallel::Interrupted.
 Refined refine(const Outline& outline, const RefineOptions& options);
 
 // The triangles of the domain alone.

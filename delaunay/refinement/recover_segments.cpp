@@ -5,6 +5,7 @@
 // Degenerate: pieces of a few units of rounding are given up and counted.
 #include "delaunay/refinement/recover_segments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -58,11 +59,16 @@ class SegmentRecovery {
     return next_corner(mesh_.mesh.neighbour(next_corner(corner)));
   }
 
-  // Whether v is on the piece from a to b, between its ends.
+  // Whether v is on the piece from a to b, between its ends, so that both parts are shorter:
+  // otherwise three vertices within the tolerance would cut each other's pieces for ever.
   bool is_on(VertexNumber a, VertexNumber b, VertexNumber v) const {
     if (v == kInfiniteVertex || v == a || v == b) return false;
     const glm::dvec2 along = mesh_.points[b] - mesh_.points[a];
     const glm::dvec2 to_v = mesh_.points[v] - mesh_.points[a];
+    const glm::dvec2 from_v = mesh_.points[b] - mesh_.points[v];
+    if (std::max(glm::dot(to_v, to_v), glm::dot(from_v, from_v)) >= glm::dot(along, along)) {
+      return false;
+    }
     const double length = glm::length(along), place = glm::dot(along, to_v) / length;
     if (place <= 0 || place >= length) return false;
     const double off = std::abs(along.x * to_v.y - along.y * to_v.x) / length;
@@ -107,7 +113,7 @@ class SegmentRecovery {
       const VertexNumber v = vertex(beyond);
       if (v == b || v == kInfiniteVertex) break;
       const int side = orient2d(mesh_.points[a], mesh_.points[b], mesh_.points[v]);
-      if (side == 0) return {v};
+      if (side == 0) return is_on(a, b, v) ? Obstacle{v} : Obstacle{};
       corner = side > 0 ? next_corner(beyond) : previous_corner(beyond);
     }
     return {};

@@ -25,8 +25,8 @@ namespace {
 using internal::RefinementMesh;
 using internal::SegmentEnds;
 
-// Products of four coordinates neither overflow nor underflow.
-constexpr double kLargestCoordinate = 0x1p200;
+// Products of four coordinates neither overflow nor, of those that count, underflow.
+constexpr double kLargestCoordinate = 0x1p200, kLeastExtent = 0x1p-200;
 constexpr std::size_t kMostVertices = kMaximumSimplices / 2 - 2;
 
 void check(const Outline& outline, const RefineOptions& options) {
@@ -35,13 +35,22 @@ void check(const Outline& outline, const RefineOptions& options) {
                                 std::to_string(static_cast<int>(kLargestMinAngle)) + " degrees");
   }
   if (!(options.max_area >= 0)) throw std::invalid_argument("the largest area is not negative");
+  double largest = 0;
   for (std::size_t row = 0; row < outline.points.size(); ++row) {
     const glm::dvec3& p = outline.points.positions[row];
     for (const double coordinate : {p.x, p.y}) {
+      largest = std::max(largest, std::abs(coordinate));
       if (std::abs(coordinate) < kLargestCoordinate) continue;
       throw std::invalid_argument("row " + std::to_string(row) +
                                   " has a coordinate that is not finite or above 1e60");
     }
+  }
+  if (largest > 0 && largest < kLeastExtent) {
+    throw std::invalid_argument("all coordinates are below 1e-60");
+  }
+  for (std::size_t i = 0; i < outline.holes.size(); ++i) {
+    if (std::isfinite(outline.holes[i].x) && std::isfinite(outline.holes[i].y)) continue;
+    throw std::invalid_argument("hole " + std::to_string(i) + " is not finite");
   }
   for (const auto& segment : outline.segments) {
     for (const std::uint32_t row : segment) {

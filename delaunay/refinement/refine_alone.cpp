@@ -17,14 +17,14 @@ class SoleAccess {
   static bool acquire(SimplexNumber) { return true; }
   static void release() {}
   bool prepare() {
-    if (mesh_->vertices >= limits_->most_vertices) {
-      throw std::length_error("refinement takes more than " +
-                              std::to_string(limits_->most_vertices) + " points");
-    }
     mesh_->reserve(1);
     return true;
   }
   VertexNumber vertex() {
+    if (mesh_->vertices >= limits_->most_vertices) {
+      throw std::length_error("refinement takes more than " +
+                              std::to_string(limits_->most_vertices) + " points");
+    }
     if (limits_->progress != nullptr) limits_->progress->advance();
     return mesh_->vertices++;
   }

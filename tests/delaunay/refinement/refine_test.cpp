@@ -284,6 +284,28 @@ TEST(Refine, AnySegmentsOnALatticeAreKept) {
   EXPECT_EQ(refinements, 400);
 }
 
+// Each of three vertices is within rounding of the edge between the two others.
+TEST(Refine, VerticesWithinRoundingOfEachOtherEnd) {
+  for (const double units : {2, 7, 20, 40, 80, 200}) {
+    for (const double start : {1.0, 1e3}) {
+      SCOPED_TRACE(std::to_string(units) + " units at " + std::to_string(start));
+      Outline outline = polygon({{0, 0}, {2 * start, 0}, {2 * start, 2 * start}, {0, 2 * start}});
+      const double unit = 0x1p-52 * start;
+      const auto first = static_cast<std::uint32_t>(outline.points.size());
+      outline.points.positions.emplace_back(start, start, 0);
+      outline.points.positions.emplace_back(start + units * unit, start, 0);
+      outline.points.positions.emplace_back(start + units / 2 * unit, start + 0.9 * units * unit,
+                                            0);
+      for (std::uint32_t k = 0; k < 3; ++k)
+        outline.segments.push_back({first + k, first + (k + 1) % 3});
+      const Refined refined = refine(outline, {.min_angle = 20, .max_points = 10'000});
+      const Verdict verdict =
+          verify_triangles(view(refined.points), refined.triangulation.vertices);
+      EXPECT_TRUE(verdict.valid && verdict.delaunay) << verdict.reason;
+    }
+  }
+}
+
 TEST(Refine, SmallCornersAreListedAndExceptTheirTriangles) {
   for (const double degrees : {40.0, 10.0, 1.0, 0.01}) {
     const double radians = degrees * std::numbers::pi / 180;
@@ -328,6 +350,18 @@ TEST(Refine, PointsOnALineHaveNoTriangles) {
   EXPECT_EQ(refine(outline, {}).points.size(), 0U);
 }
 
+TEST(Refine, AsManyPointsAsAreNeededSuffice) {
+  for (const RefinementMethod& method : refinement_methods()) {
+    SCOPED_TRACE(method.name);
+    RefineOptions options{.max_area = 0.01, .method = std::string(method.name)};
+    const std::size_t needed = refine(square(), options).points.size();
+    options.max_points = needed;
+    EXPECT_EQ(refine(square(), options).points.size(), needed);
+    options.max_points = needed - 1;
+    EXPECT_THROW(refine(square(), options), std::length_error);
+  }
+}
+
 TEST(Refine, ArgumentsThatCannotBe) {
   EXPECT_THROW(refine(square(), {.min_angle = 31}), std::invalid_argument);
   EXPECT_THROW(refine(square(), {.min_angle = -1}), std::invalid_argument);
@@ -343,6 +377,12 @@ TEST(Refine, ArgumentsThatCannotBe) {
   Outline huge = square();
   huge.points.positions[0].x = std::numeric_limits<double>::infinity();
   EXPECT_THROW(refine(huge, {}), std::invalid_argument);
+  Outline tiny = square();
+  for (glm::dvec3& p : tiny.points.positions) p *= 1e-90;
+  EXPECT_THROW(refine(tiny, {.max_points = 1000}), std::invalid_argument);
+  Outline nowhere = square();
+  nowhere.holes = {{0.5, std::numeric_limits<double>::quiet_NaN()}};
+  EXPECT_THROW(refine(nowhere, {}), std::invalid_argument);
 }
 
 TEST(Refine, EndsWhenAskedTo) {
