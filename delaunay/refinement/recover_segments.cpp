@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "delaunay/insertion/walk.h"
@@ -23,7 +24,11 @@ constexpr CornerNumber kNoCorner = 0xffffffffU;
 class SegmentRecovery {
  public:
   SegmentRecovery(RefinementMesh& mesh, const RefinementLimits& limits, RefineCounts& counts)
-      : mesh_(mesh), limits_(limits), counts_(counts), near_(mesh.vertices) {
+      : mesh_(mesh),
+        limits_(limits),
+        counts_(counts),
+        first_added_(mesh.vertices),
+        near_(mesh.vertices) {
     for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
       if (mesh.mesh.is_dead(t)) continue;
       for (unsigned k = 0; k < 3; ++k) note(mesh.mesh.vertex(t, k), t);
@@ -36,6 +41,51 @@ class SegmentRecovery {
       const auto [a, b] = pieces_.back();
       pieces_.pop_back();
       if (a != b) recover_piece(a, b);
+    }
+  }
+
+  // Vertices that were added where nothing but one segment is are on it, from where it meets
+  // anything to where it does so again.
+  void join_pieces() {
+    const VertexNumber first = first_added_;
+    struct Links {
+      std::array<VertexNumber, 2> to = kOnNoSegment;
+      int count = 0;
+    };
+    std::vector<Links> links(mesh_.vertices - first);
+    for (SimplexNumber t = 0; t < mesh_.triangles; ++t) {
+      for (unsigned k = 0; k < 3 && !mesh_.mesh.is_dead(t); ++k) {
+        const CornerNumber corner = corner_of(t, k);
+        if (!mesh_.is_segment(corner)) continue;
+        // The triangle beyond has the edge the other way round.
+        const VertexNumber from = vertex(next_corner(corner));
+        if (from < first) continue;
+        Links& of = links[from - first];
+        if (of.count < 2)
+          of.to[static_cast<std::size_t>(of.count)] = vertex(previous_corner(corner));
+        ++of.count;
+      }
+    }
+    const auto is_between = [&](VertexNumber v) {
+      return v >= first && links[v - first].count == 2;
+    };
+    std::vector<VertexNumber> joined;
+    for (VertexNumber v = first; v < mesh_.vertices; ++v) {
+      if (!is_between(v) || mesh_.ends[v] != kOnNoSegment) continue;
+      joined.assign({v});
+      SegmentEnds ends;
+      for (std::size_t side = 0; side < 2; ++side) {
+        VertexNumber before = v, at = links[v - first].to[side];
+        while (at != v && is_between(at)) {
+          joined.push_back(at);
+          const std::array<VertexNumber, 2>& to = links[at - first].to;
+          before = std::exchange(at, to[0] == before ? to[1] : to[0]);
+        }
+        ends[side] = at;
+      }
+      // Rounding may fold pieces upon each other.
+      if (ends[0] == ends[1]) continue;
+      for (const VertexNumber of : joined) mesh_.ends[of] = ends;
     }
   }
 
@@ -224,6 +274,7 @@ class SegmentRecovery {
   RefineCounts& counts_;
   SoleRefinementAccess access_;
   RefinementCavity cavity_;
+  VertexNumber first_added_;
   std::vector<SimplexNumber> near_;  // per vertex: a triangle that it is a corner of
   std::vector<SegmentEnds> pieces_;
   std::uint32_t random_ = 1;
@@ -235,6 +286,7 @@ void recover_segments(RefinementMesh& mesh, std::span<const SegmentEnds> segment
                       const RefinementLimits& limits, RefineCounts& counts) {
   SegmentRecovery recovery(mesh, limits, counts);
   for (const SegmentEnds& segment : segments) recovery.recover(segment);
+  recovery.join_pieces();
 }
 
 }  // namespace delray::delaunay::internal

@@ -14,7 +14,7 @@ namespace delray::delaunay::internal {
 // Inserts the middle of each segment that is no edge, until the pieces of all are edges, and marks
 // them (Ruppert 1995). Where a vertex lies on a segment, as closely as the mesh's tolerance, the
 // segment goes through it; where two cross, both get a vertex. Segments with equal ends are left
-// out. The vertices that this adds lie on no segment: pieces are segments from now on.
+// out. From now on what lies between two meetings of segments, or their ends, is a segment.
 //
 // Throws std::length_error, parallel::Interrupted. REQUIRES: a triangulation of the vertices
 // without marks.

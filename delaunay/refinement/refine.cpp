@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -18,6 +17,7 @@
 #include "delaunay/predicates/conflict.h"
 #include "delaunay/refinement/recover_segments.h"
 #include "delaunay/refinement/refinement_runs.h"
+#include "delaunay/refinement/small_corners.h"
 
 namespace delray::delaunay {
 namespace {
@@ -129,35 +129,6 @@ std::vector<SegmentEnds> segments_of(const Task& task) {
   return segments;
 }
 
-// Marks and lists the corners between neighbouring segments.
-std::vector<SmallCorner> find_small_corners(Task& task) {
-  constexpr double kSmall = 60 * (1 - 0x1p-40);
-  RefinementMesh& mesh = task.mesh;
-  std::vector<SmallCorner> found;
-  const auto turn = [&](CornerNumber corner) {
-    return next_corner(mesh.mesh.neighbour(next_corner(corner)));
-  };
-  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
-    for (unsigned k = 0; k < 3; ++k) {
-      const CornerNumber corner = corner_of(t, k);
-      if (!mesh.is_segment(previous_corner(corner))) continue;
-      const VertexNumber v = mesh.mesh.vertex(corner);
-      if (v == kInfiniteVertex) continue;
-      CornerNumber last = corner;
-      while (!mesh.is_segment(next_corner(last))) last = turn(last);
-      const glm::dvec2 first_side = mesh.at(next_corner(corner)) - mesh.points[v];
-      const glm::dvec2 last_side = mesh.at(previous_corner(last)) - mesh.points[v];
-      const double sine = first_side.x * last_side.y - first_side.y * last_side.x;
-      const double degrees =
-          std::atan2(sine, glm::dot(first_side, last_side)) * (180 / std::numbers::pi);
-      if (degrees <= 0 || degrees >= kSmall) continue;
-      mesh.acute[v] = 1;
-      found.push_back({v, degrees});
-    }
-  }
-  return found;
-}
-
 // Takes what can be reached from the triangles, not over segments, out of the domain.
 void take_out(RefinementMesh& mesh, std::vector<SimplexNumber> reached) {
   const auto take = [&](SimplexNumber t) {
@@ -265,16 +236,20 @@ void add_heights(const Task& task, const Triangulation& given, Refined& refined)
   std::vector<double> heights(n);
   for (std::size_t row = 0; row < n; ++row) heights[row] = refined.points[row].z;
   const Query query(view(task.outline.points.positions), given);
-  for (auto v = static_cast<VertexNumber>(task.rows.size()); v < mesh.vertices; ++v) {
+  const auto is_on_segment = [&](VertexNumber v) { return mesh.ends[v] != internal::kOnNoSegment; };
+  const auto first = static_cast<VertexNumber>(task.rows.size());
+  for (VertexNumber v = first; v < mesh.vertices; ++v) {
     glm::dvec3& p = refined.points[row_of(task, v)];
-    if (mesh.ends[v] != internal::kOnNoSegment) {
-      const glm::dvec3& a = refined.points[row_of(task, mesh.ends[v][0])];
-      const glm::dvec3& b = refined.points[row_of(task, mesh.ends[v][1])];
-      const double length = glm::length(glm::dvec2(b) - glm::dvec2(a));
-      p.z = a.z + glm::length(glm::dvec2(p) - glm::dvec2(a)) / length * (b.z - a.z);
-    } else {
-      p.z = interpolate_linear(query, heights, p).value_or(0);
-    }
+    if (!is_on_segment(v)) p.z = interpolate_linear(query, heights, p).value_or(0);
+  }
+  // Ends of segments have theirs now.
+  for (VertexNumber v = first; v < mesh.vertices; ++v) {
+    if (!is_on_segment(v)) continue;
+    glm::dvec3& p = refined.points[row_of(task, v)];
+    const glm::dvec3& a = refined.points[row_of(task, mesh.ends[v][0])];
+    const glm::dvec3& b = refined.points[row_of(task, mesh.ends[v][1])];
+    const double length = glm::length(glm::dvec2(b) - glm::dvec2(a));
+    p.z = a.z + glm::length(glm::dvec2(p) - glm::dvec2(a)) / length * (b.z - a.z);
   }
 }
 
@@ -343,7 +318,7 @@ Refined refine(const Outline& outline, const RefineOptions& options) {
   const internal::RefinementLimits limits{options.threads, most_vertices(options),
                                           options.progress};
   recover_segments(mesh, segments_of(task), limits, task.counts);
-  std::vector<SmallCorner> corners = find_small_corners(task);
+  std::vector<SmallCorner> corners = internal::find_small_corners(mesh);
   find_domain(task);
   const internal::TriangleBounds bounds(options.min_angle, options.max_area, way.measure);
   way.run(mesh, bounds, limits, task.counts);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <span>
 
 #include "delaunay/mesh/array.h"
@@ -17,6 +18,9 @@ namespace delray::delaunay::internal {
 // recovered; infinite for vertices that lie on none.
 using SegmentEnds = std::array<VertexNumber, 2>;
 constexpr SegmentEnds kOnNoSegment = {kInfiniteVertex, kInfiniteVertex};
+inline SegmentEnds ascending(VertexNumber a, VertexNumber b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
 // A constrained Delaunay triangulation of the plane: the edges that are pieces of segments are
 // marked on both sides, and every other edge is Delaunay among what can be seen from it (Chew
@@ -26,9 +30,12 @@ class RefinementMesh {
   static constexpr std::uint8_t kInside = 8;  // above the marks of the three edges
 
   Mesh<2> mesh;
-  Array<glm::dvec2> points;     // per vertex
-  Array<SegmentEnds> ends;      // per vertex: of the segment that it was put on
-  Array<std::uint8_t> acute;    // per vertex: whether segments meet there at less than 60 degrees
+  Array<glm::dvec2> points;   // per vertex
+  Array<SegmentEnds> ends;    // per vertex: of the segment that it was put on
+  Array<std::uint8_t> acute;  // per vertex: whether segments meet there at less than 60 degrees
+  // Per segment with a small corner, ends ascending: how far from its first end pieces are cut by
+  // distances from there, the others by those from the second.
+  std::map<SegmentEnds, double> reaches;
   SimplexNumber triangles = 0;  // slots in use
   VertexNumber vertices = 0;
   // Coordinates that differ by less are taken for equal by those who cut segments: some units of

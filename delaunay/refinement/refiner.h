@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "delaunay/refine.h"
 #include "delaunay/refinement/refinement_cavity.h"
 #include "delaunay/refinement/refinement_mesh.h"
+#include "delaunay/refinement/small_corners.h"
 #include "delaunay/refinement/triangle_shape.h"
 #include "delaunay/refinement/urgent_queue.h"
 
@@ -24,9 +24,8 @@ namespace delray::delaunay::internal {
 // until there is neither (Ruppert 1995):
 // - a piece is encroached upon while a vertex beside it lies within its diametral circle;
 // - a triangle is cut at its off-centre, unless that encroaches upon pieces, which are cut instead;
-// - pieces at a corner of less than 60 degrees are cut at distances that are powers of two, so that
-//   pieces of both sides do not encroach upon each other, and the triangles across such a corner
-//   stay as they are (Miller, Pav and Walkington 2003).
+// - pieces at a corner of less than 60 degrees are cut as small_corners.h says, and the triangles
+//   across such a corner stay as they are (Miller, Pav and Walkington 2003).
 //
 // `Access` grants triangles and numbers of new ones (mesh/access.h):
 //   bool acquire(SimplexNumber)          to read, and to write if the step is finished
@@ -37,7 +36,7 @@ template <class Access>
 class Refiner {
  public:
   Refiner(RefinementMesh& mesh, const TriangleBounds& bounds, Access access)
-      : mesh_(mesh), bounds_(bounds), access_(std::move(access)) {}
+      : mesh_(mesh), cuts_(mesh), bounds_(bounds), access_(std::move(access)) {}
 
   // The edge opposite to a corner, if it is a piece to be cut.
   void suspect_segment(CornerNumber corner) {
@@ -91,9 +90,6 @@ class Refiner {
     std::array<VertexNumber, 3> vertices;
   };
 
-  static std::pair<VertexNumber, VertexNumber> ascending(VertexNumber a, VertexNumber b) {
-    return {std::min(a, b), std::max(a, b)};
-  }
   VertexNumber vertex(CornerNumber corner) const { return mesh_.mesh.vertex(corner); }
   std::array<VertexNumber, 3> vertices_of(SimplexNumber t) const {
     return {mesh_.mesh.vertex(t, 0), mesh_.mesh.vertex(t, 1), mesh_.mesh.vertex(t, 2)};
@@ -109,13 +105,15 @@ class Refiner {
     triangles_.push({t, vertices_of(t)}, urgency);
   }
 
-  // By the vertex of the corner, or because the piece is no edge of the canonical triangulation.
+  // By the vertex of the corner, or because the piece is no edge of the canonical triangulation. A
+  // vertex beside an end of the piece is within its circle by rounding alone.
   bool is_encroached(CornerNumber corner) const {
-    if (vertex(corner) == kInfiniteVertex) return false;
-    const glm::dvec2& q = mesh_.at(corner);
-    const SeenAt seen =
-        seen_at(mesh_.at(next_corner(corner)), mesh_.at(previous_corner(corner)), q);
-    if (!seen.open) return seen.obtuse;
+    const VertexNumber v = vertex(corner);
+    if (v == kInfiniteVertex) return false;
+    const VertexNumber start = vertex(next_corner(corner)), end = vertex(previous_corner(corner));
+    const glm::dvec2& q = mesh_.points[v];
+    const SeenAt seen = seen_at(mesh_.points[start], mesh_.points[end], q);
+    if (!seen.open && !(seen.obtuse && cuts_.is_beside_end(v, start, end))) return seen.obtuse;
     return conflict(mesh_.mesh, mesh_.places(), simplex_of(mesh_.mesh.neighbour(corner)), q);
   }
 
@@ -136,16 +134,6 @@ class Refiner {
     }
   }
 
-  // Where a piece is cut: in the middle, or at a power of two from its one acute end.
-  glm::dvec2 place_on(const glm::dvec2& a, const glm::dvec2& b, bool acute_a, bool acute_b) const {
-    if (acute_a == acute_b) return 0.5 * a + 0.5 * b;
-    const glm::dvec2 &apex = acute_a ? a : b, &other = acute_a ? b : a;
-    const double length = glm::length(other - apex);
-    // From a third to two thirds.
-    const double distance = std::ldexp(1.0, std::ilogb(length * (2.0 / 3)));
-    return apex + distance / length * (other - apex);
-  }
-
   // So many units in the last place away from a line.
   static glm::dvec2 beside(const glm::dvec2& p, const glm::dvec2& along, int units) {
     const double unit = 0x1p-52 * std::max(std::abs(p.x), std::abs(p.y));
@@ -161,8 +149,7 @@ class Refiner {
     if (!access_.acquire(simplex_of(piece.corner))) return deny(piece);
     if (is_cut(piece)) return;
     const glm::dvec2 a = mesh_.points[piece.start], b = mesh_.points[piece.end];
-    const glm::dvec2 middle =
-        place_on(a, b, mesh_.acute[piece.start] != 0, mesh_.acute[piece.end] != 0);
+    const glm::dvec2 middle = cuts_.place_on(piece.start, piece.end);
     const bool is_fine = glm::length(b - a) > 4 * mesh_.tolerance;
     // Where rounding leaves no triangle on a side, a few units to that side may do.
     glm::dvec2 q = middle;
@@ -177,11 +164,7 @@ class Refiner {
       if (uncut_.insert(ascending(piece.start, piece.end)).second) ++counts_.too_fine;
       return;
     }
-    const SegmentEnds& of_start = mesh_.ends[piece.start];
-    const SegmentEnds& of_end = mesh_.ends[piece.end];
-    insert(q, of_start != kOnNoSegment ? of_start
-              : of_end != kOnNoSegment ? of_end
-                                       : SegmentEnds{piece.start, piece.end});
+    insert(q, cuts_.segment_of(piece.start, piece.end));
     ++counts_.on_segments;
   }
 
@@ -275,7 +258,8 @@ class Refiner {
   template <class Corners>
   void cut_instead(const Triangle& triangle, const Corners& corners) {
     for (const CornerNumber corner : corners) {
-      const auto ends = ascending(vertex(next_corner(corner)), vertex(previous_corner(corner)));
+      const SegmentEnds ends =
+          ascending(vertex(next_corner(corner)), vertex(previous_corner(corner)));
       if (uncut_.contains(ends)) return give_up();
     }
     for (const CornerNumber corner : corners) add_segment(corner);
@@ -293,6 +277,7 @@ class Refiner {
   }
 
   RefinementMesh& mesh_;
+  SegmentCuts cuts_;
   const TriangleBounds& bounds_;
   Access access_;
   RefinementCavity cavity_;
@@ -302,7 +287,7 @@ class Refiner {
   std::vector<Piece> denied_segments_;
   std::vector<CornerNumber> encroached_;
   // Pieces that doubles are too coarse to cut.
-  std::set<std::pair<VertexNumber, VertexNumber>> uncut_;
+  std::set<SegmentEnds> uncut_;
   RefineCounts counts_;
   std::uint32_t random_ = 1;
 };

@@ -284,6 +284,21 @@ TEST(Refine, AnySegmentsOnALatticeAreKept) {
   EXPECT_EQ(refinements, 400);
 }
 
+// Cuts of both sides are beside each other, so that a corner takes points by the logarithm of its
+// width, also far from it.
+TEST(Refine, NarrowCornersTakeFewPoints) {
+  for (const double second : {1.25, 1.001, 1 + 1e-9}) {
+    for (const double degrees : {1.0, 1e-2, 1e-4, 1e-6, 1e-8}) {
+      const double radians = degrees * std::numbers::pi / 180;
+      const glm::dvec2 end = {second * std::cos(radians), second * std::sin(radians)};
+      SCOPED_TRACE(std::to_string(second) + ", " + std::to_string(degrees) + " degrees");
+      const Refined refined =
+          checked(polygon({{0, 0}, {1, 0}, end}), {.min_angle = 25, .max_points = 10'000});
+      EXPECT_LT(refined.points.size(), 200U);
+    }
+  }
+}
+
 // Each of three vertices is within rounding of the edge between the two others.
 TEST(Refine, VerticesWithinRoundingOfEachOtherEnd) {
   for (const double units : {2, 7, 20, 40, 80, 200}) {
