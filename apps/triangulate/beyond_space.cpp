@@ -33,7 +33,6 @@ delaunay::PointTable load_table(const TriangulateOptions& options) {
 }  // namespace
 
 void check_beyond_space(const Session& session, const TriangulateOptions& options) {
-  const delaunay::Options defaults;
   const delaunay::Options& how = options.how;
   const std::string dim = fmt::format("--dim {}", how.dim);
   const auto is_node = [](const std::string& path) {
@@ -47,17 +46,14 @@ void check_beyond_space(const Session& session, const TriangulateOptions& option
     throw UsageError(
         fmt::format("{}: simplices go to .node and .ele, not {}", dim, options.output.path));
   }
-  if (how.method != defaults.method || how.location != defaults.location ||
-      how.split != defaults.split || how.order != defaults.order ||
-      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue || options.makers ||
-      options.max_error || !options.distributed.empty() || options.input.choice.given() ||
-      options.input.terrain_rgb || options.input.cell_size > 0 ||
-      !options.input.duplicates.empty() || !options.launch.record.empty() ||
-      options.launch.threads > 0) {
+  if (chooses_insertion(how) || options.makers || options.max_error ||
+      !options.distributed.empty() || options.input.choice.given() || options.input.terrain_rgb ||
+      options.input.cell_size > 0 || !options.input.duplicates.empty() ||
+      !options.launch.record.empty() || options.launch.threads > 0) {
     throw UsageError(
-        dim +
-        " leaves no choice of method, location, split, order, deadlocks, queue, threads, "
-        "makers, max-error, distributed, duplicates, record and of points");
+        fmt::format("{} leaves no choice of {}, of threads, makers, max-error, distributed, "
+                    "duplicates, record and of points",
+                    dim, kInsertionChoices));
   }
   if (is_tiled(session, options)) throw UsageError(dim + ": not with several ranks or tiles");
   check_outputs({{"-o", options.output.path}, {"--stats", options.statistics}},
@@ -80,9 +76,7 @@ int triangulate_beyond_space(Session& session, const TriangulateOptions& options
   Json statistics =
       statistics_of(options, points.size(), result, result.size(), hash(result), seconds);
   add_phases({}, statistics);
-  for (const char* choice : {"location", "split", "order", "deadlocks"}) {
-    statistics["options"][choice] = "none";
-  }
+  tell_no_choices(statistics);
   statistics["options"].update({{"method", "cavity"}, {"threads", 1}});
   if (!options.output.path.empty()) write_table_mesh(options.output.path, points, result);
   statistics["seconds"]["write"] = watch.lap();

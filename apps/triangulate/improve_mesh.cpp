@@ -86,9 +86,7 @@ int improve_mesh(const TriangulateOptions& given) {
     Json statistics =
         statistics_of(options, mesh.points.size(), result, result.size(), hash(result), seconds);
     add_phases({}, statistics);
-    for (const char* choice : {"location", "split", "order", "deadlocks"}) {
-      statistics["options"][choice] = "none";
-    }
+    tell_no_choices(statistics);
     statistics["options"].update({{"method", "improve"}, {"criterion", criterion.name}});
     statistics["result"].update({{"flips", flips_json(made.flips, dim)},
                                  {"turned", made.turned},

@@ -167,14 +167,12 @@ void check_refine(const Session& session, TriangulateOptions& options) {
   const delaunay::Options defaults;
   const delaunay::Options& how = options.how;
   if (how.dim != 2) throw UsageError("--min-angle and --max-area are for the plane, --dim 2");
-  if (how.method != defaults.method || how.location != defaults.location ||
-      how.split != defaults.split || how.order != defaults.order ||
-      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.makers || options.max_error ||
+  if (chooses_insertion(how) || how.seed != defaults.seed || options.makers || options.max_error ||
       !options.distributed.empty() || !options.launch.record.empty()) {
     throw UsageError(
-        "--min-angle and --max-area leave no choice of method, location, split, order, deadlocks, "
-        "queue, seed, makers, max-error, distributed and record");
+        fmt::format("--min-angle and --max-area leave no choice of {}, of seed, makers, max-error, "
+                    "distributed and record",
+                    kInsertionChoices));
   }
   if (is_tiled(session, options)) {
     throw UsageError("--min-angle and --max-area: not with several ranks or tiles");
@@ -205,9 +203,7 @@ int refine_points(Session& session, const TriangulateOptions& options) {
     warn_of_no_simplices(options, result.size());
     Json statistics = statistics_of(options, given, result, result.size(), hash(result), seconds);
     add_phases({}, statistics);
-    for (const char* choice : {"location", "split", "order", "deadlocks"}) {
-      statistics["options"][choice] = "none";
-    }
+    tell_no_choices(statistics);
     statistics["options"].update(
         {{"method", "refine"},
          {"refinement", options.refinement.method.empty() ? "auto" : options.refinement.method},

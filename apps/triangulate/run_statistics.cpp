@@ -41,6 +41,12 @@ void add_phases(const delaunay::Statistics& phases, Json& statistics) {
   sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
 }
 
+void tell_no_choices(Json& statistics) {
+  for (const char* choice : {"location", "split", "order", "deadlocks"}) {
+    statistics["options"][choice] = "none";
+  }
+}
+
 void add_output(const Json& output, Json& statistics) {
   if (!output.is_null()) statistics["raster"] = output;
 }

@@ -20,6 +20,9 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
 
 void add_phases(const delaunay::Statistics& phases, Json& statistics);
 
+// That the method left no choice.
+void tell_no_choices(Json& statistics);
+
 // Of a raster.
 void add_output(const Json& output, Json& statistics);
 

@@ -27,13 +27,9 @@ void require_plain(const TriangulateOptions& options) {
   const delaunay::Options defaults;
   const delaunay::Options& how = options.how;
   if (how.dim != 2) throw UsageError("--max-error is for terrains, which are --dim 2");
-  if (how.method != defaults.method || how.location != defaults.location ||
-      how.split != defaults.split || how.order != defaults.order ||
-      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.makers) {
+  if (chooses_insertion(how) || how.seed != defaults.seed || options.makers) {
     throw UsageError(
-        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed "
-        "and makers");
+        fmt::format("--max-error leaves no choice of {}, of seed and makers", kInsertionChoices));
   }
 }
 
@@ -45,15 +41,13 @@ void check_improve(const Session& session, TriangulateOptions& options) {
     throw UsageError("--improve: the points are those of " + options.improve + "; not " +
                      options.input.path);
   }
-  if (how.method != defaults.method || how.location != defaults.location ||
-      how.split != defaults.split || how.order != defaults.order ||
-      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.makers || options.max_error ||
+  if (chooses_insertion(how) || how.seed != defaults.seed || options.makers || options.max_error ||
       !options.distributed.empty() || options.input.choice.given() || options.input.terrain_rgb ||
       !options.input.duplicates.empty() || !options.launch.record.empty()) {
     throw UsageError(
-        "--improve leaves no choice of method, location, split, order, deadlocks, queue, seed, "
-        "makers, max-error, distributed, duplicates, record and of points");
+        fmt::format("--improve leaves no choice of {}, of seed, makers, max-error, distributed, "
+                    "duplicates, record and of points",
+                    kInsertionChoices));
   }
   if (is_tiled(session, options)) throw UsageError("--improve: not with several ranks or tiles");
   if (how.dim > 3) throw UsageError("--improve: meshes are of 2 or 3 dimensions");
@@ -89,14 +83,10 @@ void require_distributed(const TriangulateOptions& options) {
   if (options.tiles.given())
     throw UsageError(
         "--tiles, --scratch and --resume: not with --distributed, which has an area a rank");
-  const delaunay::Options defaults;
   const delaunay::Options& how = options.how;
-  if (!method.triangulates_parts &&
-      (how.method != defaults.method || how.location != defaults.location ||
-       how.split != defaults.split || how.order != defaults.order ||
-       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue)) {
-    throw UsageError("--distributed " + options.distributed +
-                     " leaves no choice of method, location, split, order, deadlocks and queue");
+  if (!method.triangulates_parts && chooses_insertion(how)) {
+    throw UsageError(fmt::format("--distributed {} leaves no choice of {}", options.distributed,
+                                 kInsertionChoices));
   }
   if (std::ranges::find(method.dims, how.dim) == method.dims.end()) {
     throw UsageError("--distributed " + options.distributed + ": not in " +
@@ -121,6 +111,13 @@ void require_used(const TriangulateOptions& options) {
 }
 
 }  // namespace
+
+bool chooses_insertion(const delaunay::Options& how) {
+  const delaunay::Options defaults;
+  return how.method != defaults.method || how.location != defaults.location ||
+         how.split != defaults.split || how.order != defaults.order ||
+         how.deadlocks != defaults.deadlocks || how.queue != defaults.queue;
+}
 
 bool takes_parts(const TriangulateOptions& options) {
   return options.output.kind() == OutputKind::none || options.output.takes_parts(options.how.dim);

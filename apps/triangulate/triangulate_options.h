@@ -44,6 +44,13 @@ struct TriangulateOptions {
   bool list = false;
 };
 
+// Whether any of kInsertionChoices was given.
+bool chooses_insertion(const delaunay::Options& how);
+
+// Options of which only the methods of delaunay/methods.h leave a choice, for messages.
+inline constexpr const char* kInsertionChoices =
+    "method, location, split, order, deadlocks and queue";
+
 void add_triangulate_options(CLI::App& command, TriangulateOptions& options);
 
 // Whether simplices can leave memory as soon as they are final.
