@@ -55,6 +55,8 @@ void list_method_options() {
   print_table("Orders of insertion (--order)", delaunay::orders());
   print_table("Deadlock strategies of the optimistic method (--deadlocks)",
               delaunay::deadlock_strategies());
+  print_table("Locks: what threads lock simplices by, or their critical section (--locks)",
+              delaunay::lock_kinds());
 }
 
 void list_methods() { print_table("Methods of triangulation (--method)", delaunay::methods()); }

@@ -37,6 +37,9 @@ Json synchronization_json(const delaunay::Synchronization& synchronization) {
           {"repaired", synchronization.repaired},
           {"rebuilds", synchronization.rebuilds},
           {"fragments", synchronization.fragments},
+          {"mutex_locks", synchronization.mutex_locks},
+          {"mutex_waits", synchronization.mutex_waits},
+          {"mutex_bytes", synchronization.mutex_bytes},
           {"journals", lengths_json(synchronization.journals)},
           {"lock_lists", lengths_json(synchronization.lock_lists)}};
 }

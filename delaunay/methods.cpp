@@ -1,6 +1,6 @@
-// The table of triangulation methods with the locations, splits, orders and deadlock strategies
-// that go with each, and the rules by which "auto" is resolved: the first method that serves the
-// dimension, and the first entry of each of its lists.
+// The table of triangulation methods with the locations, splits, orders, deadlock strategies and
+// kinds of locks that go with each, and the rules by which "auto" is resolved: the first method
+// that serves the dimension, and the first entry of each of its lists.
 #include "delaunay/methods.h"
 
 #include <algorithm>
@@ -82,6 +82,7 @@ std::span<const Method> methods() {
   static const std::vector<std::string_view> all_splits = {"random", "slabs", "distance", "curve"};
   // Threads that keep to places of their own seldom conflict.
   static const std::vector<std::string_view> curve_first = {"curve", "random", "slabs", "distance"};
+  static const std::vector<std::string_view> simplex_locks = {"atomic", "mutex", "striped"};
   static const std::vector<Method> table = {
       {.name = "divide-and-conquer",
        .description = "triangulates the points on either side of a line and merges the halves; the "
@@ -124,6 +125,7 @@ std::span<const Method> methods() {
        .locations = {"dag"},
        .splits = all_splits,
        .orders = {"brio", "random"},
+       .locks = {"mutex", "atomic"},
        .triangulate = internal::insert_pessimistically},
       {.name = "optimistic",
        .description =
@@ -134,6 +136,7 @@ std::span<const Method> methods() {
        .splits = curve_first,
        .orders = {"brio", "random"},
        .deadlocks = {"detection", "priorities"},
+       .locks = simplex_locks,
        .triangulate = internal::insert_optimistically},
       {.name = "burglary",
        .description = "as optimistic, but instead of rolling back a thread uses what a waiting "
@@ -143,6 +146,7 @@ std::span<const Method> methods() {
        .locations = {"walk", "dag"},
        .splits = curve_first,
        .orders = {"brio", "random"},
+       .locks = simplex_locks,
        .triangulate = internal::insert_by_burglary},
       {.name = "circumcircle",
        .description =
@@ -263,6 +267,17 @@ std::span<const Choice> deadlock_strategies() {
   return table;
 }
 
+std::span<const Choice> lock_kinds() {
+  static constexpr std::array<Choice, 3> table = {{
+      {"atomic", "atomic instructions; a thread that waits yields"},
+      {"mutex",
+       "one mutex of the operating system: the critical section of the pessimistic method, and "
+       "what the locks of all simplices are set under"},
+      {"striped", "1024 such mutexes, among which the locks of simplices are divided"},
+  }};
+  return table;
+}
+
 std::vector<std::string_view> locations_for(const Method& method, int dim) {
   std::vector<std::string_view> result = method.locations;
   if (dim != 2) std::erase(result, "hierarchy");
@@ -298,6 +313,7 @@ Options resolve(const Options& options) {
   result.split = choose("split", options.split, method.splits, method.name);
   result.order = choose("order", options.order, orders_for(method, result.location), method.name);
   result.deadlocks = choose("deadlock strategy", options.deadlocks, method.deadlocks, method.name);
+  result.locks = choose("locks", options.locks, method.locks, method.name);
   return result;
 }
 

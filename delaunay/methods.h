@@ -11,7 +11,7 @@
 
 namespace delray::delaunay {
 
-// A name and description of a location, split, order or deadlock strategy.
+// A name and description of a location, split, order, deadlock strategy or kind of locks.
 struct Choice {
   std::string_view name;
   std::string_view description;
@@ -28,7 +28,7 @@ struct Method {
   std::vector<int> dims;
   // The choices that go with the method, the default first; empty if it leaves none.
   std::vector<std::string_view> locations = {}, splits = {}, orders = {};
-  std::vector<std::string_view> deadlocks = {};
+  std::vector<std::string_view> deadlocks = {}, locks = {};
   bool alone = false;   // works with one thread, whatever the options say
   bool seeded = true;   // `seed` decides about something
   bool queued = false;  // `queue` does
@@ -48,6 +48,7 @@ std::span<const Choice> locations();
 std::span<const Choice> splits();
 std::span<const Choice> orders();
 std::span<const Choice> deadlock_strategies();
+std::span<const Choice> lock_kinds();
 
 // The locations of a method in one of its dimensions, the default first.
 std::vector<std::string_view> locations_for(const Method& method, int dim);

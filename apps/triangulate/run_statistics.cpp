@@ -24,6 +24,7 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
         {"split", how.split},
         {"order", how.order},
         {"deadlocks", how.deadlocks},
+        {"locks", how.locks},
         {"threads", how.threads},
         {"seed", how.seed},
         {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
@@ -42,7 +43,7 @@ void add_phases(const delaunay::Statistics& phases, Json& statistics) {
 }
 
 void tell_no_choices(Json& statistics) {
-  for (const char* choice : {"location", "split", "order", "deadlocks"}) {
+  for (const char* choice : {"location", "split", "order", "deadlocks", "locks"}) {
     statistics["options"][choice] = "none";
   }
 }

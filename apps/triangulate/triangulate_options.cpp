@@ -74,6 +74,7 @@ void add_choices(CLI::App& command) {
   choose(command, "--split", delaunay::splits());
   choose(command, "--order", delaunay::orders());
   choose(command, "--deadlocks", delaunay::deadlock_strategies());
+  choose(command, "--locks", delaunay::lock_kinds());
 }
 
 // Throws UsageError for options that mean nothing to the distributed method.
@@ -116,7 +117,8 @@ bool chooses_insertion(const delaunay::Options& how) {
   const delaunay::Options defaults;
   return how.method != defaults.method || how.location != defaults.location ||
          how.split != defaults.split || how.order != defaults.order ||
-         how.deadlocks != defaults.deadlocks || how.queue != defaults.queue;
+         how.deadlocks != defaults.deadlocks || how.locks != defaults.locks ||
+         how.queue != defaults.queue;
 }
 
 bool takes_parts(const TriangulateOptions& options) {
@@ -215,6 +217,10 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
   command.add_option(
       "--deadlocks", options.how.deadlocks,
       "How the optimistic method ends deadlocks: detection, priorities or auto (default)");
+  command.add_option(
+      "--locks", options.how.locks,
+      "What the pessimistic, optimistic and burglary methods lock by: atomic, mutex, "
+      "striped or auto (default)");
   command
       .add_option(
           "--queue", options.how.queue,

@@ -9,6 +9,7 @@
 #include "delaunay/flip/dag.h"
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
+#include "delaunay/history/lock_mutexes.h"
 #include "delaunay/history/thread_waits.h"
 #include "delaunay/mesh/add_counts.h"
 #include "delaunay/mesh/flip_counter.h"
@@ -16,6 +17,16 @@
 #include "parallel/team.h"
 
 namespace delray::delaunay::internal {
+
+// State that the threads of a run share.
+struct Burglaries {
+  Burglaries(std::size_t count, const Options& options)
+      : threads(count), mutexes(options.locks), waits(count) {}
+
+  std::size_t threads;
+  LockMutexes mutexes;
+  ThreadWaits waits;
+};
 
 // Simplices stay locked until commit(), but nothing is ever undone.
 //
@@ -30,9 +41,12 @@ class BurglarLocks : public FlipCounter {
  public:
   static constexpr bool kMayRetry = true;
 
-  BurglarLocks(Dag<D>& dag, parallel::Team& team, ThreadWaits& waits, std::uint32_t thread,
-               std::size_t threads)
-      : dag_(dag), team_(team), waits_(waits), held_(dag, thread), robbed_(threads) {}
+  BurglarLocks(Dag<D>& dag, parallel::Team& team, Burglaries& shared, std::uint32_t thread)
+      : dag_(dag),
+        team_(team),
+        waits_(shared.waits),
+        held_(dag, shared.mutexes, thread),
+        robbed_(shared.threads) {}
 
   // Never kRefused.
   Grant acquire(std::initializer_list<NodeNumber> nodes) {
@@ -76,7 +90,11 @@ class BurglarLocks : public FlipCounter {
 
   // Whether this thread ever was a burglar.
   bool has_robbed() const { return has_robbed_; }
-  const Synchronization& counts() const { return counts_; }
+  Synchronization counts() const {
+    Synchronization counts = counts_;
+    held_.count_mutexes(counts);
+    return counts;
+  }
 
  private:
   // Returns whether it has waited, or the leaf was replaced.

@@ -46,7 +46,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
   PointSupply supply = insert_alone(run, triangulation);
-  ThreadWaits waits(run.parts());
+  Burglaries shared(run.parts(), options);
   struct Burglar {
     BurglarLocks<D, kCounted> access;
     LeafSearch<D> search;
@@ -55,9 +55,8 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   insert_with_team(
       run, supply,
       [&](parallel::Team& team, std::size_t thread) {
-        return Burglar{
-            {triangulation.dag, team, waits, static_cast<std::uint32_t>(thread), run.parts()},
-            {triangulation, options.location}};
+        return Burglar{{triangulation.dag, team, shared, static_cast<std::uint32_t>(thread)},
+                       {triangulation, options.location}};
       },
       [&](Burglar& burglar, VertexNumber vertex, std::vector<NodeNumber>& suspects,
           InsertionPhases& phases) {
@@ -75,7 +74,10 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   // without a burglary; with one, all that came after it may have built on what it left.
   std::optional<std::uint64_t> repaired = 0;
   if (robbed) repaired = repair(triangulation, run.parts());
-  if (kCounted) run.statistics.synchronization.repaired += repaired.value_or(0);
+  if (kCounted) {
+    run.statistics.synchronization.repaired += repaired.value_or(0);
+    run.statistics.synchronization.mutex_bytes = shared.mutexes.bytes();
+  }
   Result result = run.finish();
   if (repaired) return result;
   if (kCounted) ++result.statistics.synchronization.rebuilds;

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
+#include "delaunay/history/lock_mutexes.h"
 #include "delaunay/history/node_cache.h"
 #include "delaunay/history/thread_waits.h"
+#include "delaunay/triangulate.h"
 #include "parallel/team.h"
 
 namespace delray::delaunay::internal {
@@ -20,8 +22,11 @@ namespace delray::delaunay::internal {
 template <int D>
 class HeldLeaves {
  public:
-  HeldLeaves(Dag<D>& dag, std::uint32_t thread)
-      : dag_(dag), owner_(thread + 1), cache_(dag, thread) {}
+  HeldLeaves(Dag<D>& dag, LockMutexes& mutexes, std::uint32_t thread)
+      : dag_(dag),
+        mutexes_(mutexes.empty() ? nullptr : &mutexes),
+        owner_(thread + 1),
+        cache_(dag, thread) {}
 
   std::uint32_t owner() const { return owner_; }
   // How many it holds, new ones among them.
@@ -34,7 +39,7 @@ class HeldLeaves {
     return record == kNoRecord ? kReplaced : try_again(node, record);
   }
   std::uint32_t try_again(NodeNumber node, RecordNumber record) {
-    const std::uint32_t before = dag_.try_lock(node, record, owner_);
+    const std::uint32_t before = test_and_set(node, record);
     if (before == 0) held_.push_back({node, record});
     return before;
   }
@@ -84,12 +89,23 @@ class HeldLeaves {
     release();
   }
 
+  void count_mutexes(Synchronization& counts) const {
+    counts.mutex_locks = mutex_counts_.entered;
+    counts.mutex_waits = mutex_counts_.contended;
+  }
+
  private:
   struct Retired {
     NodeNumber leaf;
     std::array<NodeNumber, D + 1> children;
   };
 
+  std::uint32_t test_and_set(NodeNumber node, RecordNumber record) {
+    if (mutexes_ == nullptr) return dag_.try_lock(node, record, owner_);
+    // As with the instruction, looking comes before trying.
+    const std::uint32_t before = dag_.owner(node, record);
+    return before == 0 ? mutexes_->try_lock(dag_, node, record, owner_, mutex_counts_) : before;
+  }
   // The records of what is no leaf any more will serve others.
   void release(const HeldLeaf& leaf) {
     if (dag_.is_leaf(leaf.node)) {
@@ -109,6 +125,8 @@ class HeldLeaves {
   }
 
   Dag<D>& dag_;
+  LockMutexes* mutexes_;  // null: an atomic instruction
+  LockMutexes::Counts mutex_counts_;
   std::uint32_t owner_;
   NodeCache<D> cache_;
   std::vector<HeldLeaf> held_, created_;

@@ -13,6 +13,7 @@
 #include "delaunay/flip/dag.h"
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
+#include "delaunay/history/lock_mutexes.h"
 #include "delaunay/history/thread_waits.h"
 #include "delaunay/mesh/add_counts.h"
 #include "delaunay/mesh/flip_counter.h"
@@ -21,12 +22,18 @@
 
 namespace delray::delaunay::internal {
 
-// State that the threads of a run share to decide who waits.
+// State that the threads of a run share to lock simplices, and to decide who waits.
 struct Blocking {
-  explicit Blocking(std::size_t threads) : waits(threads), priorities(threads) {
+  Blocking(std::size_t threads, const Options& options)
+      : by_priority(options.deadlocks == "priorities"),
+        mutexes(options.locks),
+        waits(threads),
+        priorities(threads) {
     for (std::size_t i = 0; i < threads; ++i) priorities[i].store(i, std::memory_order_relaxed);
   }
 
+  bool by_priority;
+  LockMutexes mutexes;
   ThreadWaits waits;
   std::vector<std::atomic<std::uint64_t>> priorities;
   std::mutex raising;
@@ -39,14 +46,13 @@ class NodeLocks : public FlipCounter {
  public:
   static constexpr bool kMayRetry = false;
 
-  NodeLocks(Dag<D>& dag, parallel::Team& team, Blocking& blocking, std::uint32_t thread,
-            bool priorities)
+  NodeLocks(Dag<D>& dag, parallel::Team& team, Blocking& blocking, std::uint32_t thread)
       : dag_(dag),
         team_(team),
         blocking_(blocking),
         thread_(thread),
-        priorities_(priorities),
-        held_(dag, thread) {}
+        priorities_(blocking.by_priority),
+        held_(dag, blocking.mutexes, thread) {}
 
   Grant acquire(std::initializer_list<NodeNumber> nodes) {
     if (kCounted) ++counts_.lock_calls;
@@ -116,7 +122,11 @@ class NodeLocks : public FlipCounter {
     refused_ = {};
   }
 
-  const Synchronization& counts() const { return counts_; }
+  Synchronization counts() const {
+    Synchronization counts = counts_;
+    held_.count_mutexes(counts);
+    return counts;
+  }
 
  private:
   struct Link {

@@ -48,7 +48,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
   PointSupply supply = run.supply();
-  Blocking blocking(run.parts());
+  Blocking blocking(run.parts(), options);
   struct Locker {
     NodeLocks<D, kCounted> access;
     LeafSearch<D> search;
@@ -56,8 +56,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   insert_with_team(
       run, supply,
       [&](parallel::Team& team, std::size_t thread) {
-        return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread),
-                       options.deadlocks == "priorities"},
+        return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread)},
                       {triangulation, options.location}};
       },
       [&](Locker& locker, VertexNumber vertex, std::vector<NodeNumber>& suspects,
@@ -76,6 +75,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
         add(run.statistics.synchronization, locker.access.counts());
         add(run.statistics.flips, locker.access.flips());
       });
+  if (kCounted) run.statistics.synchronization.mutex_bytes = blocking.mutexes.bytes();
   return run.finish();
 }
 

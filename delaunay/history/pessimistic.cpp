@@ -2,7 +2,8 @@
 // one at a time.
 //
 // A thread descends the shared history without a lock, enters the critical section, descends on
-// from that leaf to the present one, subdivides and legalizes. Expected O(n log n) in random or
+// from that leaf to the present one, subdivides and legalizes. options.locks says what the critical
+// section is made of. Expected O(n log n) in random or
 // brio order; all but the location is sequential.
 //
 // Degenerate: collinear (3D: coplanar) points need no insertion.
@@ -11,6 +12,7 @@
 #include <mutex>
 #include <vector>
 
+#include "delaunay/history/critical_section.h"
 #include "delaunay/history/dag_location.h"
 #include "delaunay/history/dag_run.h"
 #include "delaunay/history/insert_in_leaf.h"
@@ -29,8 +31,9 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
   PointSupply supply = run.supply();
-  std::mutex leaves;
-  std::uint64_t entered = 0;
+  const bool by_mutex = options.locks == "mutex";
+  CriticalSection leaves(by_mutex);
+  std::uint64_t entered = 0, contended = 0;
   insert_with_team(
       run, supply,
       [&](parallel::Team&, std::size_t thread) {
@@ -41,8 +44,11 @@ Result insert_all_points(PointView<double> points, const Options& options) {
         const auto& q = run.point(vertex);
         NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
                                   root_of(triangulation.dag, triangulation.orientation, q), q);
-        const std::lock_guard alone(leaves);
+        std::unique_lock alone(leaves, std::try_to_lock);
+        const bool waits = !alone;
+        if (waits) alone.lock();
         ++entered;
+        contended += waits ? 1 : 0;
         leaf = descend(triangulation.dag, triangulation.orientation, leaf, q);
         phases.located();
         insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
@@ -50,7 +56,16 @@ Result insert_all_points(PointView<double> points, const Options& options) {
       [&](const SoleDagAccess<D>& access) {
         if (options.statistics) add(run.statistics.flips, access.flips());
       });
-  if (options.statistics) run.statistics.synchronization.lock_calls = entered;
+  if (options.statistics) {
+    Synchronization& counts = run.statistics.synchronization;
+    counts.lock_calls = entered;
+    counts.waits = contended;
+    if (by_mutex) {
+      counts.mutex_locks = entered;
+      counts.mutex_waits = contended;
+      counts.mutex_bytes = sizeof(CriticalSection);
+    }
+  }
   return run.finish();
 }
 

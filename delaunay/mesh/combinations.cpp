@@ -8,10 +8,16 @@
 #include "delaunay/methods.h"
 
 namespace delray::delaunay {
+namespace {
+
+using Names = std::vector<std::string_view>;
+
+Names or_none(const Names& names) { return names.empty() ? Names{"none"} : names; }
+Names default_of(const Names& names) { return {or_none(names).front()}; }
+
+}  // namespace
 
 std::vector<Options> combinations(int dim) {
-  using Names = std::vector<std::string_view>;
-  const auto or_none = [](const Names& names) { return names.empty() ? Names{"none"} : names; };
   std::vector<Options> result;
   for (const Method& method : methods()) {
     if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
@@ -22,11 +28,15 @@ std::vector<Options> combinations(int dim) {
       options.location = location;
       for (const auto split : or_none(method.splits)) {
         options.split = split;
+        const bool is_default = split == default_of(method.splits).front();
         for (const auto order : or_none(orders_for(method, location))) {
           options.order = order;
           for (const auto strategy : or_none(method.deadlocks)) {
             options.deadlocks = strategy;
-            result.push_back(options);
+            for (const auto kind : is_default ? or_none(method.locks) : default_of(method.locks)) {
+              options.locks = kind;
+              result.push_back(options);
+            }
           }
         }
       }
@@ -38,18 +48,19 @@ std::vector<Options> combinations(int dim) {
 std::vector<Options> locations_and_orders(int dim) {
   std::vector<Options> result = combinations(dim);
   std::erase_if(result, [](const Options& options) {
-    Options plain = options;
-    plain.split = "auto";
-    plain.deadlocks = "auto";
-    plain = resolve(plain);
-    return plain.split != options.split || plain.deadlocks != options.deadlocks;
+    Options plain;
+    plain.dim = options.dim;
+    plain.method = options.method;
+    plain.location = options.location;
+    plain.order = options.order;
+    return name_of(resolve(plain)) != name_of(options);
   });
   return result;
 }
 
 std::string name_of(const Options& options) {
   return options.method + "/" + options.location + "/" + options.split + "/" + options.order + "/" +
-         options.deadlocks;
+         options.deadlocks + "/" + options.locks;
 }
 
 }  // namespace delray::delaunay

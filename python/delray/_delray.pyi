@@ -17,6 +17,7 @@ class Triangulation:
         split: str = ...,
         order: str = ...,
         deadlocks: str = ...,
+        locks: str = ...,
         queue: int = ...,
         seed: int = ...,
         threads: Optional[int] = ...,

@@ -40,7 +40,7 @@ class Delaunay:
     dim : 2 or 3
         Dimension; by default the number of columns. 2 with three columns triangulates a terrain by
         its x and y.
-    method, location, split, order, deadlocks, queue, seed, statistics
+    method, location, split, order, deadlocks, locks, queue, seed, statistics
         See `triangulate`.
     """
 
@@ -259,6 +259,7 @@ def triangulate(
     split: str = "auto",
     order: str = "auto",
     deadlocks: str = "auto",
+    locks: str = "auto",
     queue: int = 0,
     seed: int = 1,
     threads: Optional[int] = None,
@@ -268,7 +269,8 @@ def triangulate(
     all. Names that do not go together raise ValueError, which lists those that do.
 
     dim : 2 or 3, by default the number of columns; 2 takes x and y of three.
-    method, location, split, order, deadlocks : names, as `delray triangulate --list` explains them.
+    method, location, split, order, deadlocks, locks : names, as `delray triangulate --list`
+        explains them.
     queue : places in the queue of the batch method; 0: as many as in its paper.
     seed : of everything that is random.
     threads : all cores by default.
@@ -282,6 +284,7 @@ def triangulate(
         split=split,
         order=order,
         deadlocks=deadlocks,
+        locks=locks,
         queue=queue,
         seed=seed,
         threads=threads,

@@ -182,7 +182,8 @@ TEST(CompareTriangulate, ComparesOnEachInput) {
   const std::string page = folder.read("report.html");
   for (const char* part :
        {"spielman, efficiency", "gauss.xyz", "and 1 more inputs", "law makes of it",
-        "The queue of the batch method", "optimistic, priorities"}) {
+        "The queue of the batch method", "optimistic, priorities",
+        "Atomic instructions against mutexes", "optimistic, striped"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
   const Ran as_one = run(arguments + " --stats -", folder.path());

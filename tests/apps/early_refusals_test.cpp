@@ -40,12 +40,19 @@ TEST(EarlyRefusals, OfOptionsThatMethodsMakeNoUseOf) {
   for (const std::string how : {"-o m.ply", "--stats - --tiles 3", "--stats - --ranks 2",
                                 "--stats - --distributed chen --ranks 2"}) {
     refusals.push_back({"triangulate p.ply --queue 9 " + how, 2, {"--queue"}});
+    refusals.push_back({"triangulate p.ply --locks mutex " + how, 2, {"locks"}});
     refusals.push_back({"triangulate p.ply --seed 9 " + how, 2, {"--seed"}});
   }
+  refusals.push_back(
+      {"triangulate p.ply --stats - --method batch --locks mutex", 2, {"no choice of locks"}});
+  refusals.push_back({"triangulate p.ply --stats - --method pessimistic --locks striped",
+                      2,
+                      {"it has: mutex, atomic"}});
   expect_refusals(folder, refusals);
   for (const std::string options :
        {"--dim 3 --seed 9 --tiles 3", "--method batch --queue 9 --seed 9 --tiles 3",
-        "--method insertion --seed 9", "--distributed interface-workers --ranks 2 --seed 9"}) {
+        "--method optimistic --locks striped", "--method insertion --seed 9",
+        "--distributed interface-workers --ranks 2 --seed 9"}) {
     const Ran ran = run("delray triangulate p.ply --stats - " + options, folder.path());
     EXPECT_EQ(ran.exit_code, 0) << options << ": " << ran.err;
   }

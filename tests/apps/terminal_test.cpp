@@ -66,7 +66,8 @@ TEST(Terminal, ListsHaveHeadingsThereAlone) {
     EXPECT_NE(render.out.find("(" + option + "):"), std::string::npos) << option;
   }
   const Ran triangulate = run_on_terminal("triangulate --list", 72, folder);
-  for (const std::string option : {"--method", "--location", "--split", "--order", "--deadlocks"}) {
+  for (const std::string option :
+       {"--method", "--location", "--split", "--order", "--deadlocks", "--locks"}) {
     EXPECT_NE(triangulate.out.find("(" + option + "):"), std::string::npos) << option;
   }
 }

@@ -105,6 +105,12 @@ std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size
       how.queue = queue;
       result.push_back(resolve(how));
     }
+    how.queue = 0;
+    for (std::size_t i = 1; i < method.locks.size(); ++i) {
+      how.locks = method.locks[i];
+      result.push_back(resolve(how));
+    }
+    how.locks = "auto";
     if (method.name != kOfSplits) continue;
     how.deadlocks = method.deadlocks.back();
     result.push_back(resolve(how));
@@ -115,6 +121,14 @@ std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size
     }
   }
   return result;
+}
+
+// What its method does without being told.
+delaunay::Options plain_of(const delaunay::Options& how) {
+  delaunay::Options plain;
+  plain.dim = how.dim;
+  plain.method = how.method;
+  return resolve(plain);
 }
 
 // The rows in a random order, of which each comparison of fewer points takes the first.
@@ -276,7 +290,8 @@ class TriangulationRuns {
     row.simplices_by_thread.resize(static_cast<std::size_t>(how.threads));
     for (const std::uint16_t maker : makers) ++row.simplices_by_thread[maker];
     row.fragments = count_fragments(made, makers, points.size());
-    if (!request_.output.empty() && how.threads == result_.shown_threads && how.threads > 1)
+    if (!request_.output.empty() && how.threads == result_.shown_threads && how.threads > 1 &&
+        has_plain_locks(how))
       show(points, made, makers, row);
     steps_.done(points.size());
     return row;
@@ -320,24 +335,22 @@ std::vector<std::size_t> compared_sizes(std::size_t points) {
 }
 
 std::string name_of(const delaunay::Options& how) {
-  delaunay::Options plain;
-  plain.dim = how.dim;
-  plain.method = how.method;
-  plain = resolve(plain);
+  const delaunay::Options plain = plain_of(how);
   std::string name = how.method;
   if (how.location != plain.location) name += ", " + how.location;
   if (how.split != plain.split) name += ", " + how.split;
   if (how.deadlocks != plain.deadlocks) name += ", " + how.deadlocks;
+  if (how.locks != plain.locks) name += ", " + how.locks;
   if (how.queue != plain.queue) name += fmt::format(", queue of {}", how.queue);
   return name;
 }
 
+bool has_plain_locks(const delaunay::Options& how) { return how.locks == plain_of(how).locks; }
+
 bool is_plain(const delaunay::Options& how) {
-  delaunay::Options plain;
-  plain.dim = how.dim;
-  plain.method = how.method;
-  plain = resolve(plain);
-  return how.split == plain.split && how.deadlocks == plain.deadlocks && how.queue == plain.queue;
+  const delaunay::Options plain = plain_of(how);
+  return how.split == plain.split && how.deadlocks == plain.deadlocks && how.queue == plain.queue &&
+         has_plain_locks(how);
 }
 
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row) {

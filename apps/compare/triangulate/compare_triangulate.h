@@ -71,8 +71,11 @@ struct TriangulateComparison {
 
 // The method, and what is not its default: "optimistic, slabs".
 std::string name_of(const delaunay::Options& how);
-// Whether split, queue and deadlock strategy are those that the method takes without being told.
+// Whether split, queue, deadlock strategy and locks are those that the method takes without being
+// told.
 bool is_plain(const delaunay::Options& how);
+// Whether its locks are.
+bool has_plain_locks(const delaunay::Options& how);
 
 // Its time with one thread over its time; 0 where that was not measured.
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row);

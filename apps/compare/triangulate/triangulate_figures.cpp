@@ -23,6 +23,7 @@ Json statistics_of(const TriangulateComparison& comparison, const ComparedTriang
           {"split", how.split},
           {"order", how.order},
           {"deadlocks", how.deadlocks},
+          {"locks", how.locks},
           {"queue", how.queue},
           {"threads", how.threads},
           {"points", row.points},

@@ -12,6 +12,7 @@
 
 #include "apps/compare/triangulate/algorithms_report.h"
 #include "apps/compare/triangulate/flips_report.h"
+#include "apps/compare/triangulate/locks_report.h"
 #include "apps/compare/triangulate/scaling_laws.h"
 #include "apps/compare/triangulate/triangulate_answer.h"
 #include "apps/compare/triangulate/triangulate_figures.h"
@@ -256,7 +257,8 @@ Html locks(const TriangulateComparison& comparison) {
   });
   // A critical section is no lock of a simplex.
   const Rows several = rows_of(rows, [](const Row& row) {
-    return row.how.threads > 1 && row.statistics.synchronization.free > 0;
+    return row.how.threads > 1 && row.statistics.synchronization.free > 0 &&
+           has_plain_locks(row.how);
   });
   if (rows.empty()) return paragraph("No locks were taken.");
   std::vector<Html> charts;
@@ -302,10 +304,11 @@ Html locks(const TriangulateComparison& comparison) {
              "MA: calls of the locking routine, each for all simplices that the next step "
              "needs. AL: simplices that the thread held already. F: free ones. W: those that "
              "another thread held. Of the pessimistic method MA is how often threads entered "
-             "the critical section. Rollbacks are insertions that were undone and tried "
+             "the critical section, and W how often another one was inside. Rollbacks are "
+             "insertions that were undone and tried "
              "again; repaired and rebuilds are what the burglary and circumcircle methods "
              "do at the end, where a burglary may have left something wrong.") +
-         list_lengths(comparison);
+         lock_kinds(comparison) + list_lengths(comparison);
 }
 
 // The simplices in the colours of their threads; empty without pictures.
@@ -355,8 +358,9 @@ Html makers_bars(const TriangulateComparison& comparison, const Rows& rows, std:
 
 Html fragments(const TriangulateComparison& comparison) {
   const int threads = comparison.shown_threads;
-  const Rows rows =
-      rows_of(comparison.rows, [&](const Row& row) { return row.how.threads == threads; });
+  const Rows rows = rows_of(comparison.rows, [&](const Row& row) {
+    return row.how.threads == threads && has_plain_locks(row.how);
+  });
   Html result = pictures_of_makers(comparison);
   const Html chart = over_points(
       rows,
