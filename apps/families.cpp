@@ -57,6 +57,8 @@ void list_method_options() {
               delaunay::deadlock_strategies());
   print_table("Locks: what threads lock simplices by, or their critical section (--locks)",
               delaunay::lock_kinds());
+  print_table("Times of unlocking: when threads unlock simplices (--unlock)",
+              delaunay::unlock_times());
 }
 
 void list_methods() { print_table("Methods of triangulation (--method)", delaunay::methods()); }

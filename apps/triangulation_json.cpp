@@ -31,6 +31,7 @@ Json synchronization_json(const delaunay::Synchronization& synchronization) {
           {"already_locked", synchronization.already_locked},
           {"free", synchronization.free},
           {"waits", synchronization.waits},
+          {"unlocked_early", synchronization.unlocked_early},
           {"deadlocks", synchronization.deadlocks},
           {"rollbacks", synchronization.rollbacks},
           {"burglaries", synchronization.burglaries},

@@ -9,15 +9,15 @@
 namespace delray::delaunay {
 
 // All legal methods, locations, splits, orders and deadlock strategies in a dimension, in the order
-// of the tables, and with the default split all kinds of locks; the rest of the options is as by
-// default. "none" where a method leaves no choice.
+// of the tables, and with the default split all kinds of locks and times of unlocking; the rest of
+// the options is as by default. "none" where a method leaves no choice.
 std::vector<Options> combinations(int dim);
 
-// The combinations with the method's default split, deadlock strategy and kind of locks: every
-// method with every location and order.
+// The combinations with the method's default split, deadlock strategy, kind of locks and time of
+// unlocking: every method with every location and order.
 std::vector<Options> locations_and_orders(int dim);
 
-// "optimistic/dag/curve/brio/detection/atomic".
+// "optimistic/dag/curve/brio/detection/atomic/end".
 std::string name_of(const Options& options);
 
 }  // namespace delray::delaunay

@@ -137,6 +137,7 @@ std::span<const Method> methods() {
        .orders = {"brio", "random"},
        .deadlocks = {"detection", "priorities"},
        .locks = simplex_locks,
+       .unlocks = {"end", "early"},
        .triangulate = internal::insert_optimistically},
       {.name = "burglary",
        .description = "as optimistic, but instead of rolling back a thread uses what a waiting "
@@ -147,6 +148,7 @@ std::span<const Method> methods() {
        .splits = curve_first,
        .orders = {"brio", "random"},
        .locks = simplex_locks,
+       .unlocks = {"end", "early"},
        .triangulate = internal::insert_by_burglary},
       {.name = "circumcircle",
        .description =
@@ -278,6 +280,14 @@ std::span<const Choice> lock_kinds() {
   return table;
 }
 
+std::span<const Choice> unlock_times() {
+  static constexpr std::array<Choice, 2> table = {{
+      {"end", "all simplices when the point is inserted"},
+      {"early", "neighbours of the new simplices as soon as they are known to stay"},
+  }};
+  return table;
+}
+
 std::vector<std::string_view> locations_for(const Method& method, int dim) {
   std::vector<std::string_view> result = method.locations;
   if (dim != 2) std::erase(result, "hierarchy");
@@ -314,6 +324,7 @@ Options resolve(const Options& options) {
   result.order = choose("order", options.order, orders_for(method, result.location), method.name);
   result.deadlocks = choose("deadlock strategy", options.deadlocks, method.deadlocks, method.name);
   result.locks = choose("locks", options.locks, method.locks, method.name);
+  result.unlock = choose("time of unlocking", options.unlock, method.unlocks, method.name);
   return result;
 }
 

@@ -11,7 +11,8 @@
 
 namespace delray::delaunay {
 
-// A name and description of a location, split, order, deadlock strategy or kind of locks.
+// A name and description of a location, split, order, deadlock strategy, kind of locks or time of
+// unlocking.
 struct Choice {
   std::string_view name;
   std::string_view description;
@@ -28,7 +29,7 @@ struct Method {
   std::vector<int> dims;
   // The choices that go with the method, the default first; empty if it leaves none.
   std::vector<std::string_view> locations = {}, splits = {}, orders = {};
-  std::vector<std::string_view> deadlocks = {}, locks = {};
+  std::vector<std::string_view> deadlocks = {}, locks = {}, unlocks = {};
   bool alone = false;   // works with one thread, whatever the options say
   bool seeded = true;   // `seed` decides about something
   bool queued = false;  // `queue` does
@@ -49,6 +50,7 @@ std::span<const Choice> splits();
 std::span<const Choice> orders();
 std::span<const Choice> deadlock_strategies();
 std::span<const Choice> lock_kinds();
+std::span<const Choice> unlock_times();
 
 // The locations of a method in one of its dimensions, the default first.
 std::vector<std::string_view> locations_for(const Method& method, int dim);

@@ -49,8 +49,9 @@ report::Look look_in(const Table& table, std::string_view variant) {
 // The ways to run a method differ by their dashes, by place in the tables of what goes with it.
 int dash_of_way(std::string_view variant) {
   int dash = 0, place = 0;
-  for (const auto& choices : {delaunay::locations(), delaunay::splits(),
-                              delaunay::deadlock_strategies(), delaunay::lock_kinds()}) {
+  for (const auto& choices :
+       {delaunay::locations(), delaunay::splits(), delaunay::deadlock_strategies(),
+        delaunay::lock_kinds(), delaunay::unlock_times()}) {
     for (const delaunay::Choice& choice : choices) {
       ++place;
       if (variant.find(", " + std::string(choice.name)) != std::string_view::npos) dash = place;

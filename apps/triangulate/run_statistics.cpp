@@ -25,6 +25,7 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
         {"order", how.order},
         {"deadlocks", how.deadlocks},
         {"locks", how.locks},
+        {"unlock", how.unlock},
         {"threads", how.threads},
         {"seed", how.seed},
         {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
@@ -43,7 +44,7 @@ void add_phases(const delaunay::Statistics& phases, Json& statistics) {
 }
 
 void tell_no_choices(Json& statistics) {
-  for (const char* choice : {"location", "split", "order", "deadlocks", "locks"}) {
+  for (const char* choice : {"location", "split", "order", "deadlocks", "locks", "unlock"}) {
     statistics["options"][choice] = "none";
   }
 }

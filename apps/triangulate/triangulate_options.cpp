@@ -75,6 +75,7 @@ void add_choices(CLI::App& command) {
   choose(command, "--order", delaunay::orders());
   choose(command, "--deadlocks", delaunay::deadlock_strategies());
   choose(command, "--locks", delaunay::lock_kinds());
+  choose(command, "--unlock", delaunay::unlock_times());
 }
 
 // Throws UsageError for options that mean nothing to the distributed method.
@@ -118,7 +119,7 @@ bool chooses_insertion(const delaunay::Options& how) {
   return how.method != defaults.method || how.location != defaults.location ||
          how.split != defaults.split || how.order != defaults.order ||
          how.deadlocks != defaults.deadlocks || how.locks != defaults.locks ||
-         how.queue != defaults.queue;
+         how.unlock != defaults.unlock || how.queue != defaults.queue;
 }
 
 bool takes_parts(const TriangulateOptions& options) {
@@ -221,6 +222,9 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
       "--locks", options.how.locks,
       "What the pessimistic, optimistic and burglary methods lock by: atomic, mutex, "
       "striped or auto (default)");
+  command.add_option(
+      "--unlock", options.how.unlock,
+      "When the optimistic and burglary methods unlock simplices: end, early or auto (default)");
   command
       .add_option(
           "--queue", options.how.queue,

@@ -1,11 +1,11 @@
-// Every triangulation method with every location, split, order, deadlock strategy and kind of locks
-// that goes with it, on the report's six distributions (Kohout 2004, section 7) and with one thread
-// and two:
+// Every triangulation method with every location, split, order, deadlock strategy, kind of locks
+// and time of unlocking that goes with it, on the report's six distributions (Kohout 2004, section
+// 7) and with one thread and two:
 //
 //   delaunay_methods [--points N] [--benchmark_filter=REGEX] [options of Google Benchmark]
 //
-// Names are dim/method/location/split/order/deadlocks/locks/distribution/threads, as in the tables
-// that the program lists, so that 2D/optimistic/dag/curve/.*/uniform/2 is a filter.
+// Names are dim/method/location/split/order/deadlocks/locks/unlock/distribution/threads, as in the
+// tables that the program lists, so that 2D/optimistic/dag/curve/.*/uniform/2 is a filter.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>

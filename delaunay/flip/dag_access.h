@@ -7,10 +7,13 @@
 //   link(outside, inside)    makes two facets one; `outside` is of an older node, `inside` of a new
 //   retire(node, children)   gives a leaf its children
 //   kMayRetry                whether acquire may return kRetry
+//   keep(node)               if it wants to know of leaves that an insertion leaves as they are
 // All of it is small and called some ten times a point, so it is inlined into the loops of
 // dag_flip_2d.h and flip_3d.h. An operation is a subdivision or a flip; between operations the
 // leaves are a triangulation.
 #pragma once
+
+#include <cstdint>
 
 namespace delray::delaunay::internal {
 
@@ -19,6 +22,13 @@ enum class Grant {
   kRefused,  // nothing will come of it: undo everything
   kRetry,    // others may have changed acquired nodes meanwhile: look again
 };
+
+// Tells a policy that wants to know of a leaf that the insertion keeps, and as far as is known
+// needs no more.
+template <class Access>
+void tell_kept(Access& access, std::uint32_t node) {
+  if constexpr (requires { access.keep(node); }) access.keep(node);
+}
 
 // A history, its points and their orientation: dag_flip_2d.h, dag_flip_3d.h.
 template <int D>

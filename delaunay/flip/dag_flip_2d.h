@@ -188,6 +188,7 @@ template <class Access>
     }
     if (!flips) {
       suspects.pop_back();
+      tell_kept(access, simplex_of(beyond));
       continue;
     }
     std::array<NodeNumber, 2> made{};

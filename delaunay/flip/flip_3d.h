@@ -277,6 +277,7 @@ Grant Flips3d<Simplices, Access>::legalize() {
     const glm::dvec3& q = orientation_.point(simplices_.vertex(suspect));
     if (!conflict(simplices_, orientation_, simplex_of(beyond), q)) {
       pop();
+      tell_kept(access_, simplex_of(beyond));
       continue;
     }
     Turned near = turn(suspect);

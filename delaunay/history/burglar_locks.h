@@ -21,14 +21,19 @@ namespace delray::delaunay::internal {
 // State that the threads of a run share.
 struct Burglaries {
   Burglaries(std::size_t count, const Options& options)
-      : threads(count), mutexes(options.locks), waits(count) {}
+      : threads(count),
+        unlocks_early(options.unlock == "early"),
+        mutexes(options.locks),
+        waits(count) {}
 
   std::size_t threads;
+  bool unlocks_early;
   LockMutexes mutexes;
   ThreadWaits waits;
 };
 
-// Simplices stay locked until commit(), but nothing is ever undone.
+// Simplices stay locked until commit() (with options.unlock early, those that the insertion keeps:
+// as in NodeLocks), but nothing is ever undone.
 //
 // A thread whose waiting would close a circle breaks into the simplices of the thread that it would
 // wait for, until its own commit(). Nobody else uses them meanwhile: their owner waits for a
@@ -45,6 +50,7 @@ class BurglarLocks : public FlipCounter {
       : dag_(dag),
         team_(team),
         waits_(shared.waits),
+        early_(shared.unlocks_early),
         held_(dag, shared.mutexes, thread),
         robbed_(shared.threads) {}
 
@@ -81,6 +87,11 @@ class BurglarLocks : public FlipCounter {
     held_.retire(node, children);
   }
 
+  // See tell_kept(). Neighbours of what the insertion replaced stay what they are.
+  void keep(NodeNumber node) {
+    if (early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
+  }
+
   void commit() {
     if (kCounted) add_list(counts_.lock_lists, held_.size());
     held_.commit();
@@ -111,6 +122,7 @@ class BurglarLocks : public FlipCounter {
   Dag<D>& dag_;
   parallel::Team& team_;
   ThreadWaits& waits_;
+  bool early_;
   HeldLeaves<D> held_;
   std::vector<bool> robbed_;  // thread i, by this one, since its last commit
   bool robs_ = false, has_robbed_ = false;

@@ -16,8 +16,9 @@
 
 namespace delray::delaunay::internal {
 
-// Leaves stay locked until commit() or undo(), also if they are replaced meanwhile, by whomsoever:
-// a thread that waits for a leaf waits until its owner is done with everything. What the thread
+// Leaves stay locked until commit() or undo(), also if they are replaced meanwhile, by whomsoever,
+// unless they are given back by unlock(): a thread that waits for a leaf waits until its owner is
+// done with everything. What the thread
 // creates meanwhile is locked too, since others may walk by.
 template <int D>
 class HeldLeaves {
@@ -30,7 +31,7 @@ class HeldLeaves {
 
   std::uint32_t owner() const { return owner_; }
   // How many it holds, new ones among them.
-  std::size_t size() const { return held_.size() + created_.size(); }
+  std::size_t size() const { return held_.size() - unlocked_ + created_.size(); }
 
   // As Dag::try_lock(), and `record` is the node's.
   std::uint32_t try_lock(NodeNumber node, RecordNumber& record) {
@@ -57,6 +58,19 @@ class HeldLeaves {
     }
     waits.leave(owner_ - 1);
     return before;
+  }
+
+  // Gives a leaf back before the end. Returns whether it was this thread's, and not a new one.
+  //
+  // REQUIRES: the insertion keeps the leaf, and has linked it to a leaf that stays locked. Nobody
+  // can replace it, then, without that one; and the link is this thread's own to restore.
+  bool unlock(NodeNumber node) {
+    if (cache_.is_new(node)) return false;
+    const RecordNumber record = dag_.record_if_leaf(node);
+    if (record == kNoRecord || dag_.owner(node, record) != owner_) return false;
+    dag_.set_owner(node, record, 0);
+    ++unlocked_;
+    return true;
   }
 
   void reserve(NodeNumber count) { cache_.reserve(count); }
@@ -116,11 +130,15 @@ class HeldLeaves {
     }
   }
   void release() {
-    for (const HeldLeaf& held : held_) release(held);
+    for (const HeldLeaf& held : held_) {
+      // What was given back may be another thread's by now, or this one's for the second time.
+      if (unlocked_ == 0 || dag_.owner(held.node, held.record) == owner_) release(held);
+    }
     for (const HeldLeaf& created : created_) release(created);
     held_.clear();
     created_.clear();
     retired_.clear();
+    unlocked_ = 0;
     cache_.forget_new();
   }
 
@@ -130,6 +148,7 @@ class HeldLeaves {
   std::uint32_t owner_;
   NodeCache<D> cache_;
   std::vector<HeldLeaf> held_, created_;
+  std::size_t unlocked_ = 0;  // of held_, before the end
   std::vector<Retired> retired_;
 };
 

@@ -26,21 +26,25 @@ namespace delray::delaunay::internal {
 struct Blocking {
   Blocking(std::size_t threads, const Options& options)
       : by_priority(options.deadlocks == "priorities"),
+        unlocks_early(options.unlock == "early"),
         mutexes(options.locks),
         waits(threads),
         priorities(threads) {
     for (std::size_t i = 0; i < threads; ++i) priorities[i].store(i, std::memory_order_relaxed);
   }
 
-  bool by_priority;
+  bool by_priority, unlocks_early;
   LockMutexes mutexes;
   ThreadWaits waits;
   std::vector<std::atomic<std::uint64_t>> priorities;
   std::mutex raising;
 };
 
-// Simplices stay locked until commit() or rollback(), and no other thread ever sees what is undone.
-// kCounted: whether to count.
+// Simplices stay locked until commit() or rollback(), and no other thread ever builds on what is
+// undone. With options.unlock early, those that the insertion keeps are given back before that: a
+// boundary simplex that another thread changes meanwhile gets links on other facets only, since for
+// all else that thread needs the new simplex beyond, which stays locked. After a rollback the
+// thread finds it replaced, and rolls back in turn. kCounted: whether to count.
 template <int D, bool kCounted>
 class NodeLocks : public FlipCounter {
  public:
@@ -52,6 +56,7 @@ class NodeLocks : public FlipCounter {
         blocking_(blocking),
         thread_(thread),
         priorities_(blocking.by_priority),
+        early_(blocking.unlocks_early),
         held_(dag, blocking.mutexes, thread) {}
 
   Grant acquire(std::initializer_list<NodeNumber> nodes) {
@@ -97,6 +102,11 @@ class NodeLocks : public FlipCounter {
   }
   void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
     held_.retire(node, children);
+  }
+
+  // See tell_kept(). Neighbours of what the insertion replaced stay what they are.
+  void keep(NodeNumber node) {
+    if (early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
   }
 
   void commit() {
@@ -161,7 +171,7 @@ class NodeLocks : public FlipCounter {
   parallel::Team& team_;
   Blocking& blocking_;
   std::uint32_t thread_;
-  bool priorities_;
+  bool priorities_, early_;
   HeldLeaves<D> held_;
   HeldLeaf refused_;  // what refuser_ (1 + its number) would not give
   std::uint32_t refuser_ = 0;

@@ -31,6 +31,7 @@ inline void add(Synchronization& sum, const Synchronization& counts) {
   sum.deadlocks += counts.deadlocks;
   sum.rollbacks += counts.rollbacks;
   sum.burglaries += counts.burglaries;
+  sum.unlocked_early += counts.unlocked_early;
   sum.mutex_locks += counts.mutex_locks;
   sum.mutex_waits += counts.mutex_waits;
   add(sum.journals, counts.journals);

@@ -35,7 +35,11 @@ std::vector<Options> combinations(int dim) {
             options.deadlocks = strategy;
             for (const auto kind : is_default ? or_none(method.locks) : default_of(method.locks)) {
               options.locks = kind;
-              result.push_back(options);
+              for (const auto time :
+                   is_default ? or_none(method.unlocks) : default_of(method.unlocks)) {
+                options.unlock = time;
+                result.push_back(options);
+              }
             }
           }
         }
@@ -60,7 +64,7 @@ std::vector<Options> locations_and_orders(int dim) {
 
 std::string name_of(const Options& options) {
   return options.method + "/" + options.location + "/" + options.split + "/" + options.order + "/" +
-         options.deadlocks + "/" + options.locks;
+         options.deadlocks + "/" + options.locks + "/" + options.unlock;
 }
 
 }  // namespace delray::delaunay

@@ -18,6 +18,7 @@ class Triangulation:
         order: str = ...,
         deadlocks: str = ...,
         locks: str = ...,
+        unlock: str = ...,
         queue: int = ...,
         seed: int = ...,
         threads: Optional[int] = ...,

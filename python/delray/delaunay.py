@@ -40,7 +40,7 @@ class Delaunay:
     dim : 2 or 3
         Dimension; by default the number of columns. 2 with three columns triangulates a terrain by
         its x and y.
-    method, location, split, order, deadlocks, locks, queue, seed, statistics
+    method, location, split, order, deadlocks, locks, unlock, queue, seed, statistics
         See `triangulate`.
     """
 
@@ -260,6 +260,7 @@ def triangulate(
     order: str = "auto",
     deadlocks: str = "auto",
     locks: str = "auto",
+    unlock: str = "auto",
     queue: int = 0,
     seed: int = 1,
     threads: Optional[int] = None,
@@ -269,8 +270,8 @@ def triangulate(
     all. Names that do not go together raise ValueError, which lists those that do.
 
     dim : 2 or 3, by default the number of columns; 2 takes x and y of three.
-    method, location, split, order, deadlocks, locks : names, as `delray triangulate --list`
-        explains them.
+    method, location, split, order, deadlocks, locks, unlock : names, as `delray triangulate
+        --list` explains them.
     queue : places in the queue of the batch method; 0: as many as in its paper.
     seed : of everything that is random.
     threads : all cores by default.
@@ -285,6 +286,7 @@ def triangulate(
         order=order,
         deadlocks=deadlocks,
         locks=locks,
+        unlock=unlock,
         queue=queue,
         seed=seed,
         threads=threads,

@@ -183,7 +183,7 @@ TEST(CompareTriangulate, ComparesOnEachInput) {
   for (const char* part :
        {"spielman, efficiency", "gauss.xyz", "and 1 more inputs", "law makes of it",
         "The queue of the batch method", "optimistic, priorities",
-        "Atomic instructions against mutexes", "optimistic, striped"}) {
+        "Atomic instructions against mutexes", "optimistic, striped", "Unlocking early"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
   const Ran as_one = run(arguments + " --stats -", folder.path());

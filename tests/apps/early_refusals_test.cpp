@@ -41,6 +41,7 @@ TEST(EarlyRefusals, OfOptionsThatMethodsMakeNoUseOf) {
                                 "--stats - --distributed chen --ranks 2"}) {
     refusals.push_back({"triangulate p.ply --queue 9 " + how, 2, {"--queue"}});
     refusals.push_back({"triangulate p.ply --locks mutex " + how, 2, {"locks"}});
+    refusals.push_back({"triangulate p.ply --unlock early " + how, 2, {"unlock"}});
     refusals.push_back({"triangulate p.ply --seed 9 " + how, 2, {"--seed"}});
   }
   refusals.push_back(
@@ -51,8 +52,8 @@ TEST(EarlyRefusals, OfOptionsThatMethodsMakeNoUseOf) {
   expect_refusals(folder, refusals);
   for (const std::string options :
        {"--dim 3 --seed 9 --tiles 3", "--method batch --queue 9 --seed 9 --tiles 3",
-        "--method optimistic --locks striped", "--method insertion --seed 9",
-        "--distributed interface-workers --ranks 2 --seed 9"}) {
+        "--method optimistic --locks striped", "--method burglary --unlock early --dim 3",
+        "--method insertion --seed 9", "--distributed interface-workers --ranks 2 --seed 9"}) {
     const Ran ran = run("delray triangulate p.ply --stats - " + options, folder.path());
     EXPECT_EQ(ran.exit_code, 0) << options << ": " << ran.err;
   }

@@ -67,7 +67,7 @@ TEST(Terminal, ListsHaveHeadingsThereAlone) {
   }
   const Ran triangulate = run_on_terminal("triangulate --list", 72, folder);
   for (const std::string option :
-       {"--method", "--location", "--split", "--order", "--deadlocks", "--locks"}) {
+       {"--method", "--location", "--split", "--order", "--deadlocks", "--locks", "--unlock"}) {
     EXPECT_NE(triangulate.out.find("(" + option + "):"), std::string::npos) << option;
   }
 }

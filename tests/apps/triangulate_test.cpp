@@ -29,9 +29,9 @@ TEST(TriangulateCommand, WritesStatisticsWithEveryKey) {
        {"read", "triangulate", "write", "order", "locate", "subdivide", "legalize", "extract"}) {
     EXPECT_TRUE(stats["seconds"][key].is_number()) << key;
   }
-  for (const char* key :
-       {"lock_calls", "already_locked", "free", "waits", "deadlocks", "rollbacks", "repaired",
-        "fragments", "dag_nodes", "dag_node_bytes", "mutex_locks", "mutex_waits", "mutex_bytes"}) {
+  for (const char* key : {"lock_calls", "already_locked", "free", "waits", "deadlocks", "rollbacks",
+                          "repaired", "fragments", "dag_nodes", "dag_node_bytes", "unlocked_early",
+                          "mutex_locks", "mutex_waits", "mutex_bytes"}) {
     EXPECT_EQ(stats["sync"][key], 0) << key;
   }
   EXPECT_GT(stats["memory"]["peak_rss"], 0);

@@ -111,6 +111,11 @@ std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size
       result.push_back(resolve(how));
     }
     how.locks = "auto";
+    for (std::size_t i = 1; i < method.unlocks.size(); ++i) {
+      how.unlock = method.unlocks[i];
+      result.push_back(resolve(how));
+    }
+    how.unlock = "auto";
     if (method.name != kOfSplits) continue;
     how.deadlocks = method.deadlocks.back();
     result.push_back(resolve(how));
@@ -291,7 +296,7 @@ class TriangulationRuns {
     for (const std::uint16_t maker : makers) ++row.simplices_by_thread[maker];
     row.fragments = count_fragments(made, makers, points.size());
     if (!request_.output.empty() && how.threads == result_.shown_threads && how.threads > 1 &&
-        has_plain_locks(how))
+        is_plain_but_for_makers(how))
       show(points, made, makers, row);
     steps_.done(points.size());
     return row;
@@ -341,16 +346,20 @@ std::string name_of(const delaunay::Options& how) {
   if (how.split != plain.split) name += ", " + how.split;
   if (how.deadlocks != plain.deadlocks) name += ", " + how.deadlocks;
   if (how.locks != plain.locks) name += ", " + how.locks;
+  if (how.unlock != plain.unlock) name += ", " + how.unlock;
   if (how.queue != plain.queue) name += fmt::format(", queue of {}", how.queue);
   return name;
 }
 
-bool has_plain_locks(const delaunay::Options& how) { return how.locks == plain_of(how).locks; }
+bool is_plain_but_for_makers(const delaunay::Options& how) {
+  const delaunay::Options plain = plain_of(how);
+  return how.locks == plain.locks && how.unlock == plain.unlock && how.queue == plain.queue;
+}
 
 bool is_plain(const delaunay::Options& how) {
   const delaunay::Options plain = plain_of(how);
-  return how.split == plain.split && how.deadlocks == plain.deadlocks && how.queue == plain.queue &&
-         has_plain_locks(how);
+  return how.split == plain.split && how.deadlocks == plain.deadlocks &&
+         is_plain_but_for_makers(how);
 }
 
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row) {

@@ -71,11 +71,12 @@ struct TriangulateComparison {
 
 // The method, and what is not its default: "optimistic, slabs".
 std::string name_of(const delaunay::Options& how);
-// Whether split, queue, deadlock strategy and locks are those that the method takes without being
-// told.
+// Whether split, queue, deadlock strategy and locks are those that the method
+// takes without being told.
 bool is_plain(const delaunay::Options& how);
-// Whether its locks are.
-bool has_plain_locks(const delaunay::Options& how);
+// Whether all but split and deadlock strategy are: what else there is decides about time alone, not
+// about who makes which simplices.
+bool is_plain_but_for_makers(const delaunay::Options& how);
 
 // Its time with one thread over its time; 0 where that was not measured.
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row);

@@ -84,4 +84,34 @@ Html lock_kinds(const TriangulateComparison& comparison) {
              "flag.");
 }
 
+Html unlock_times(const TriangulateComparison& comparison) {
+  const Rows rows = rows_by(comparison, &delaunay::Options::unlock, &delaunay::Method::unlocks);
+  if (std::ranges::all_of(rows, [](const Row& row) { return is_plain(row.how); })) return {};
+  Table numbers;
+  numbers.columns = {{"points", true, false, {}},
+                     {"method", false, false, {}},
+                     {"unlocks", false, false, {}},
+                     {"ms", true, true, Source::measured}};
+  for (const char* name : {"unlocked early/N", "MA/N", "F/N", "W/N", "lock list, mean", "deadlocks",
+                           "rollbacks", "burglaries"})
+    numbers.columns.push_back({name, true, true, Source::counted});
+  for (const Row& row : rows) {
+    const delaunay::Synchronization& s = row.statistics.synchronization;
+    const double insertions = std::max(static_cast<double>(s.lock_lists.lists), 1.0);
+    numbers.rows.push_back(
+        {std::to_string(row.points), row.how.method, row.how.unlock,
+         fmt::format("{:.2f}", row.seconds.median * 1e3), per_point(s.unlocked_early, row),
+         per_point(s.lock_calls, row), per_point(s.free, row), per_point(s.waits, row),
+         fmt::format("{:.4g}", static_cast<double>(s.lock_lists.entries) / insertions),
+         std::to_string(s.deadlocks), std::to_string(s.rollbacks), std::to_string(s.burglaries)});
+  }
+  return heading("Unlocking early") + table(numbers) +
+         paragraph(
+             "A neighbour of the new simplices that an insertion leaves as it is can be unlocked "
+             "before the insertion ends: others cannot replace it without the new simplex beside "
+             "it, which stays locked. If a later step of the insertion needs it again, it is "
+             "locked "
+             "again.");
+}
+
 }  // namespace delray::apps

@@ -24,6 +24,7 @@ Json statistics_of(const TriangulateComparison& comparison, const ComparedTriang
           {"order", how.order},
           {"deadlocks", how.deadlocks},
           {"locks", how.locks},
+          {"unlock", how.unlock},
           {"queue", how.queue},
           {"threads", how.threads},
           {"points", row.points},

@@ -258,7 +258,7 @@ Html locks(const TriangulateComparison& comparison) {
   // A critical section is no lock of a simplex.
   const Rows several = rows_of(rows, [](const Row& row) {
     return row.how.threads > 1 && row.statistics.synchronization.free > 0 &&
-           has_plain_locks(row.how);
+           is_plain_but_for_makers(row.how);
   });
   if (rows.empty()) return paragraph("No locks were taken.");
   std::vector<Html> charts;
@@ -308,7 +308,7 @@ Html locks(const TriangulateComparison& comparison) {
              "insertions that were undone and tried "
              "again; repaired and rebuilds are what the burglary and circumcircle methods "
              "do at the end, where a burglary may have left something wrong.") +
-         lock_kinds(comparison) + list_lengths(comparison);
+         lock_kinds(comparison) + unlock_times(comparison) + list_lengths(comparison);
 }
 
 // The simplices in the colours of their threads; empty without pictures.
@@ -359,7 +359,7 @@ Html makers_bars(const TriangulateComparison& comparison, const Rows& rows, std:
 Html fragments(const TriangulateComparison& comparison) {
   const int threads = comparison.shown_threads;
   const Rows rows = rows_of(comparison.rows, [&](const Row& row) {
-    return row.how.threads == threads && has_plain_locks(row.how);
+    return row.how.threads == threads && is_plain_but_for_makers(row.how);
   });
   Html result = pictures_of_makers(comparison);
   const Html chart = over_points(
