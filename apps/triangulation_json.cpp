@@ -45,4 +45,12 @@ Json synchronization_json(const delaunay::Synchronization& synchronization) {
           {"lock_lists", lengths_json(synchronization.lock_lists)}};
 }
 
+Json searching_json(const std::vector<delaunay::SearchingThreads>& searching) {
+  Json result = Json::array();
+  for (const auto& [inserted, threads] : searching) {
+    result.push_back({{"inserted", inserted}, {"threads", threads}});
+  }
+  return result;
+}
+
 }  // namespace delray::apps

@@ -325,6 +325,12 @@ Options resolve(const Options& options) {
   result.deadlocks = choose("deadlock strategy", options.deadlocks, method.deadlocks, method.name);
   result.locks = choose("locks", options.locks, method.locks, method.name);
   result.unlock = choose("time of unlocking", options.unlock, method.unlocks, method.name);
+  if (options.searching < 0 ||
+      (method.queued && options.searching > std::max(options.threads - 1, 0))) {
+    throw std::invalid_argument("searching: " + std::to_string(options.searching) +
+                                " threads locate points and one inserts them, of " +
+                                std::to_string(options.threads) + " threads");
+  }
   return result;
 }
 

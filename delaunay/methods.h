@@ -32,7 +32,7 @@ struct Method {
   std::vector<std::string_view> deadlocks = {}, locks = {}, unlocks = {};
   bool alone = false;   // works with one thread, whatever the options say
   bool seeded = true;   // `seed` decides about something
-  bool queued = false;  // `queue` does
+  bool queued = false;  // `queue` and `searching` do
   // Takes seconds for some thousands of points in space, or quadratic time where many points lie
   // near a common circle or sphere, or two lines.
   bool slow = false;

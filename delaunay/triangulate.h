@@ -34,19 +34,26 @@ struct Synchronization {
   std::uint64_t already_locked = 0;  // simplices that the thread held when it asked for them
   std::uint64_t free = 0;            // simplices that were locked at once
   std::uint64_t waits = 0;           // simplices, or critical sections, that another thread held
-  std::uint64_t unlocked_early =
-      0;                          // simplices that were given back before the end of an insertion
-  std::uint64_t deadlocks = 0;    // found, or (strategy priorities) feared
-  std::uint64_t rollbacks = 0;    // insertions that were undone and tried again
-  std::uint64_t burglaries = 0;   // of simplices of a waiting thread
-  std::uint64_t repaired = 0;     // simplices that the repair at the end replaced
-  std::uint64_t rebuilds = 0;     // repairs that had to start from the points
-  std::uint64_t fragments = 0;    // connected sets of simplices made by one thread
-  std::uint64_t mutex_locks = 0;  // mutexes of the operating system that were locked
-  std::uint64_t mutex_waits = 0;  // of these, how many another thread held
-  std::uint64_t mutex_bytes = 0;  // memory of all mutexes of the run
-  ListLengths journals;           // links that an undone insertion would restore
-  ListLengths lock_lists;         // simplices that a thread held at the end, new ones among them
+  std::uint64_t unlocked_early = 0;  // simplices that were unlocked before their insertion ended
+  std::uint64_t deadlocks = 0;       // found, or (strategy priorities) feared
+  std::uint64_t rollbacks = 0;       // insertions that were undone and tried again
+  std::uint64_t burglaries = 0;      // of simplices of a waiting thread
+  std::uint64_t repaired = 0;        // simplices that the repair at the end replaced
+  std::uint64_t rebuilds = 0;        // repairs that had to start from the points
+  std::uint64_t fragments = 0;       // connected sets of simplices made by one thread
+  std::uint64_t mutex_locks = 0;     // mutexes of the operating system that were locked
+  std::uint64_t mutex_waits = 0;     // of these, how many another thread held
+  std::uint64_t mutex_bytes = 0;     // memory of all mutexes of the run
+  ListLengths journals;              // links that an undone insertion would restore
+  ListLengths lock_lists;            // simplices that a thread held at the end, new ones among them
+};
+
+// The threads of the batch method that located points, from so many insertions on.
+struct SearchingThreads {
+  std::uint64_t inserted = 0;
+  int threads = 0;
+
+  bool operator==(const SearchingThreads&) const = default;
 };
 
 // Seconds of the phases, summed over threads; a phase that a method does not have stays 0.
@@ -60,6 +67,7 @@ struct Statistics {
   std::uint64_t dag_nodes = 0;       // simplices that ever were, if the method keeps them
   std::uint64_t dag_node_bytes = 0;  // of each of them, with its share of what few have
   Synchronization synchronization;
+  std::vector<SearchingThreads> searching;  // ascending; where the method has such threads
 };
 
 inline constexpr int kMostThreads = 4096;
@@ -74,6 +82,7 @@ struct Options {
   std::string deadlocks = "auto";  // what a thread does that must not wait
   std::string locks = "auto";      // what a thread locks by
   std::string unlock = "auto";     // when a thread unlocks
+  int searching = 0;               // threads of the batch method that locate; 0: as times tell
   std::size_t queue = 0;           // places in the queue of the batch method; 0: as in the report
   std::uint64_t seed = 1;          // of everything that is random
   int threads = 1;                 // at most; from 1 to kMostThreads

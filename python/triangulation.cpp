@@ -299,8 +299,8 @@ std::unique_ptr<Mesh> make_mesh(const py::object& points, std::optional<int> dim
                                 const std::string& method, const std::string& location,
                                 const std::string& split, const std::string& order,
                                 const std::string& deadlocks, const std::string& locks,
-                                const std::string& unlock, std::size_t queue, std::uint64_t seed,
-                                std::optional<int> threads, bool statistics) {
+                                const std::string& unlock, int searching, std::size_t queue,
+                                std::uint64_t seed, std::optional<int> threads, bool statistics) {
   delaunay::Options how;
   how.method = method;
   how.location = location;
@@ -309,6 +309,7 @@ std::unique_ptr<Mesh> make_mesh(const py::object& points, std::optional<int> dim
   how.deadlocks = deadlocks;
   how.locks = locks;
   how.unlock = unlock;
+  how.searching = searching;
   how.queue = queue;
   how.seed = seed;
   how.statistics = statistics;
@@ -323,8 +324,8 @@ void add_triangulation(py::module_& module) {
   py::class_<Mesh>(module, "Triangulation")
       .def(py::init(&make_mesh), "points"_a, py::kw_only(), "dim"_a = py::none(), "method"_a = any,
            "location"_a = any, "split"_a = any, "order"_a = any, "deadlocks"_a = any,
-           "locks"_a = any, "unlock"_a = any, "queue"_a = 0, "seed"_a = 1, "threads"_a = py::none(),
-           "statistics"_a = false)
+           "locks"_a = any, "unlock"_a = any, "searching"_a = 0, "queue"_a = 0, "seed"_a = 1,
+           "threads"_a = py::none(), "statistics"_a = false)
       .def_property_readonly("dim", &Mesh::dim)
       .def_property_readonly("threads", &Mesh::threads)
       .def_property_readonly("points", [](const Mesh& mesh) { return mesh.points().array; })

@@ -26,6 +26,7 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
         {"deadlocks", how.deadlocks},
         {"locks", how.locks},
         {"unlock", how.unlock},
+        {"searching", how.searching},
         {"threads", how.threads},
         {"seed", how.seed},
         {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
@@ -40,7 +41,9 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
 void add_phases(const delaunay::Statistics& phases, Json& statistics) {
   statistics["seconds"].update(phases_json(phases));
   Json& sync = statistics["sync"] = synchronization_json(phases.synchronization);
-  sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
+  sync.update({{"dag_nodes", phases.dag_nodes},
+               {"dag_node_bytes", phases.dag_node_bytes},
+               {"searching", searching_json(phases.searching)}});
 }
 
 void tell_no_choices(Json& statistics) {

@@ -103,6 +103,9 @@ void require_used(const TriangulateOptions& options) {
   if (options.how.queue != defaults.queue && !method.queued) {
     throw UsageError(fmt::format("--queue has no effect with method {}", method.name));
   }
+  if (options.how.searching != defaults.searching && !method.queued) {
+    throw UsageError(fmt::format("--searching has no effect with method {}", method.name));
+  }
   const bool by_areas =
       options.distributed.empty() ||
       find_entry(delaunay::distributed_methods(), options.distributed, "--distributed")
@@ -119,7 +122,8 @@ bool chooses_insertion(const delaunay::Options& how) {
   return how.method != defaults.method || how.location != defaults.location ||
          how.split != defaults.split || how.order != defaults.order ||
          how.deadlocks != defaults.deadlocks || how.locks != defaults.locks ||
-         how.unlock != defaults.unlock || how.queue != defaults.queue;
+         how.unlock != defaults.unlock || how.searching != defaults.searching ||
+         how.queue != defaults.queue;
 }
 
 bool takes_parts(const TriangulateOptions& options) {
@@ -225,6 +229,11 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
   command.add_option(
       "--unlock", options.how.unlock,
       "When the optimistic and burglary methods unlock simplices: end, early or auto (default)");
+  command
+      .add_option("--searching", options.how.searching,
+                  "Threads of the batch method that locate points, fewer than --threads (default: "
+                  "as many as keep the inserting thread busy, by measured times)")
+      ->transform(count_between(1, delaunay::kMostThreads));
   command
       .add_option(
           "--queue", options.how.queue,

@@ -49,7 +49,7 @@ bool chooses_insertion(const delaunay::Options& how);
 
 // Options of which only the methods of delaunay/methods.h leave a choice, for messages.
 inline constexpr const char* kInsertionChoices =
-    "method, location, split, order, deadlocks, locks, unlock and queue";
+    "method, location, split, order, deadlocks, locks, unlock, searching and queue";
 
 void add_triangulate_options(CLI::App& command, TriangulateOptions& options);
 

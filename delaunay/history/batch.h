@@ -8,9 +8,10 @@
 
 namespace delray::delaunay::internal {
 
-// All threads but one locate their points in the shared history and put what they found into a
-// bounded queue; one thread takes it out, goes on to the leaf, subdivides and legalizes (Kohout
-// 2004, 7.5). A single thread does the one after the other.
+// Threads, options.searching of them or as many as measured times ask for, locate points in the
+// shared history and put what they found into a bounded queue; one thread takes it out, goes on to
+// the leaf, subdivides and legalizes (Kohout 2004, 7.5). A single thread does the one after the
+// other.
 //
 // REQUIRES: resolved options. Errors: see triangulate().
 Result insert_in_batches(PointView<double> points, const Options& options);

@@ -22,11 +22,12 @@ class RequestQueue {
  public:
   explicit RequestQueue(std::size_t places) : requests_(std::max<std::size_t>(places, 1)) {}
 
-  // The writer's.
-  bool put(const Request& request) {
-    if (written_ - seen_read_ == requests_.size()) {
+  // The writer's, who may use so many of the places for now.
+  bool put(const Request& request, std::size_t places) {
+    places = std::clamp<std::size_t>(places, 1, requests_.size());
+    if (written_ - seen_read_ >= places) {
       seen_read_ = shared_read_.load(std::memory_order_acquire);
-      if (written_ - seen_read_ == requests_.size()) return false;
+      if (written_ - seen_read_ >= places) return false;
     }
     requests_[written_++ % requests_.size()] = request;
     shared_written_.store(written_, std::memory_order_release);

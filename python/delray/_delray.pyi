@@ -19,6 +19,7 @@ class Triangulation:
         deadlocks: str = ...,
         locks: str = ...,
         unlock: str = ...,
+        searching: int = ...,
         queue: int = ...,
         seed: int = ...,
         threads: Optional[int] = ...,

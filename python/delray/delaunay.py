@@ -40,7 +40,7 @@ class Delaunay:
     dim : 2 or 3
         Dimension; by default the number of columns. 2 with three columns triangulates a terrain by
         its x and y.
-    method, location, split, order, deadlocks, locks, unlock, queue, seed, statistics
+    method, location, split, order, deadlocks, locks, unlock, searching, queue, seed, statistics
         See `triangulate`.
     """
 
@@ -261,6 +261,7 @@ def triangulate(
     deadlocks: str = "auto",
     locks: str = "auto",
     unlock: str = "auto",
+    searching: int = 0,
     queue: int = 0,
     seed: int = 1,
     threads: Optional[int] = None,
@@ -272,6 +273,7 @@ def triangulate(
     dim : 2 or 3, by default the number of columns; 2 takes x and y of three.
     method, location, split, order, deadlocks, locks, unlock : names, as `delray triangulate
         --list` explains them.
+    searching : threads of the batch method that locate points; 0: by measured times.
     queue : places in the queue of the batch method; 0: as many as in its paper.
     seed : of everything that is random.
     threads : all cores by default.
@@ -287,6 +289,7 @@ def triangulate(
         deadlocks=deadlocks,
         locks=locks,
         unlock=unlock,
+        searching=searching,
         queue=queue,
         seed=seed,
         threads=threads,

@@ -40,20 +40,24 @@ TEST(EarlyRefusals, OfOptionsThatMethodsMakeNoUseOf) {
   for (const std::string how : {"-o m.ply", "--stats - --tiles 3", "--stats - --ranks 2",
                                 "--stats - --distributed chen --ranks 2"}) {
     refusals.push_back({"triangulate p.ply --queue 9 " + how, 2, {"--queue"}});
+    refusals.push_back({"triangulate p.ply --searching 1 " + how, 2, {"--searching"}});
     refusals.push_back({"triangulate p.ply --locks mutex " + how, 2, {"locks"}});
     refusals.push_back({"triangulate p.ply --unlock early " + how, 2, {"unlock"}});
     refusals.push_back({"triangulate p.ply --seed 9 " + how, 2, {"--seed"}});
   }
-  refusals.push_back(
-      {"triangulate p.ply --stats - --method batch --locks mutex", 2, {"no choice of locks"}});
+  const std::string batch = "triangulate p.ply --stats - --method batch ";
+  refusals.push_back({batch + "--threads 3 --searching 3", 2, {"3 threads locate points"}});
+  refusals.push_back({batch + "--threads 3 --searching 0", 2, {"--searching"}});
+  refusals.push_back({batch + "--locks mutex", 2, {"no choice of locks"}});
   refusals.push_back({"triangulate p.ply --stats - --method pessimistic --locks striped",
                       2,
                       {"it has: mutex, atomic"}});
   expect_refusals(folder, refusals);
   for (const std::string options :
        {"--dim 3 --seed 9 --tiles 3", "--method batch --queue 9 --seed 9 --tiles 3",
-        "--method optimistic --locks striped", "--method burglary --unlock early --dim 3",
-        "--method insertion --seed 9", "--distributed interface-workers --ranks 2 --seed 9"}) {
+        "--method batch --threads 3 --searching 2", "--method optimistic --locks striped",
+        "--method burglary --unlock early --dim 3", "--method insertion --seed 9",
+        "--distributed interface-workers --ranks 2 --seed 9"}) {
     const Ran ran = run("delray triangulate p.ply --stats - " + options, folder.path());
     EXPECT_EQ(ran.exit_code, 0) << options << ": " << ran.err;
   }

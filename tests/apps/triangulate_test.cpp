@@ -34,6 +34,7 @@ TEST(TriangulateCommand, WritesStatisticsWithEveryKey) {
                           "mutex_locks", "mutex_waits", "mutex_bytes"}) {
     EXPECT_EQ(stats["sync"][key], 0) << key;
   }
+  EXPECT_EQ(stats["sync"]["searching"], json::array());
   EXPECT_GT(stats["memory"]["peak_rss"], 0);
   EXPECT_EQ(stats["input"]["points"], 1000);
   // Euler: every distinct point is a vertex, so simplices = 2 n - 2 - hull.

@@ -78,6 +78,15 @@ std::vector<const delaunay::Method*> compared_methods(const TriangulateRequest& 
   return result;
 }
 
+// Numbers of threads that locate points, beside the one that the method chooses by itself.
+std::vector<int> searching_threads(const delaunay::Method& method, int threads) {
+  std::vector<int> result;
+  if (!method.queued || threads < 3) return result;
+  for (int searching = 1; searching < threads - 1; searching *= 2) result.push_back(searching);
+  result.push_back(threads - 1);
+  return result;
+}
+
 // Every way to triangulate that goes with the request.
 std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size_t points, int dim,
                                     const std::vector<int>& threads, int shown_threads) {
@@ -106,6 +115,11 @@ std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size
       result.push_back(resolve(how));
     }
     how.queue = 0;
+    for (const int searching : searching_threads(method, shown_threads)) {
+      how.searching = searching;
+      result.push_back(resolve(how));
+    }
+    how.searching = 0;
     for (std::size_t i = 1; i < method.locks.size(); ++i) {
       how.locks = method.locks[i];
       result.push_back(resolve(how));
@@ -347,13 +361,15 @@ std::string name_of(const delaunay::Options& how) {
   if (how.deadlocks != plain.deadlocks) name += ", " + how.deadlocks;
   if (how.locks != plain.locks) name += ", " + how.locks;
   if (how.unlock != plain.unlock) name += ", " + how.unlock;
+  if (how.searching != plain.searching) name += fmt::format(", {} searching", how.searching);
   if (how.queue != plain.queue) name += fmt::format(", queue of {}", how.queue);
   return name;
 }
 
 bool is_plain_but_for_makers(const delaunay::Options& how) {
   const delaunay::Options plain = plain_of(how);
-  return how.locks == plain.locks && how.unlock == plain.unlock && how.queue == plain.queue;
+  return how.locks == plain.locks && how.unlock == plain.unlock && how.queue == plain.queue &&
+         how.searching == plain.searching;
 }
 
 bool is_plain(const delaunay::Options& how) {

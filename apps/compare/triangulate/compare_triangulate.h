@@ -71,7 +71,7 @@ struct TriangulateComparison {
 
 // The method, and what is not its default: "optimistic, slabs".
 std::string name_of(const delaunay::Options& how);
-// Whether split, queue, deadlock strategy and locks are those that the method
+// Whether split, queue, searching threads, deadlock strategy and locks are those that the method
 // takes without being told.
 bool is_plain(const delaunay::Options& how);
 // Whether all but split and deadlock strategy are: what else there is decides about time alone, not

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "apps/compare/triangulate/algorithms_report.h"
+#include "apps/compare/triangulate/batch_report.h"
 #include "apps/compare/triangulate/flips_report.h"
 #include "apps/compare/triangulate/locks_report.h"
 #include "apps/compare/triangulate/scaling_laws.h"
@@ -182,29 +183,6 @@ Html speed_ups(const TriangulateComparison& comparison) {
          scaling_laws(all, most);
 }
 
-// Capacities of queues against time (the report's Figure 7.6); empty where there are none.
-Html queues(const TriangulateComparison& comparison) {
-  Rows rows = rows_of(comparison.rows, [](const Row& row) { return row.how.queue > 0; });
-  std::ranges::stable_sort(rows, {}, [](const Row& row) { return row.how.queue; });
-  if (rows.empty()) return {};
-  return heading("The queue of the batch method") +
-         chart_of({"Time against the capacity of the queue, " + threads_text(rows[0].how.threads),
-                   "time, ms"},
-                  "points in the queue",
-                  series_by(
-                      rows,
-                      [](const Row& row) {
-                        return fmt::format("{}, {} points", row.how.method, row.points);
-                      },
-                      look, Source::measured,
-                      [](const Row& row) -> std::optional<ChartPoint> {
-                        return time_at(static_cast<double>(row.how.queue), row);
-                      })) +
-         paragraph(
-             "Threads that locate points wait while the queue is full, and the one that inserts "
-             "them while it is empty. Without being told the queue goes by the number of points.");
-}
-
 StackedBar phases_of(const std::string& name, const Row& row) {
   const delaunay::Statistics& s = row.statistics;
   StackedBar bar{name, {s.order, s.locate, s.subdivide, s.legalize, s.extract}};
@@ -244,7 +222,7 @@ Html phases(const TriangulateComparison& comparison) {
     }
     result.push_back(stacked_bars(chart));
   }
-  return in_columns(result) + queues(comparison) +
+  return in_columns(result) + queues(comparison) + searching_threads(comparison) +
          paragraph(
              "Seconds of one run each, summed over threads; who waits for a lock waits in "
              "the phase that needs it. divide-and-conquer does everything but sorting and "
