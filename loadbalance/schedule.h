@@ -81,8 +81,8 @@ using TaskFunction = parallel::FunctionRef<void(std::uint32_t task, int thread)>
 struct Schedule {
   const char* name;
   const char* description;
-  // Collective: returns when this rank has done its tasks and will get no more, which with both
-  // kinds of stealing is when all tasks have been begun, with the others maybe earlier. What a task
+  // Collective: returns when this rank has done its tasks and will get no more: with stealing when
+  // all have been begun, divisible ones done, with the other schedules maybe earlier. What a task
   // throws, run throws, once this rank's other threads are done with theirs; as any exception it
   // ends the run of all ranks. Leaves no message behind.
   //

@@ -24,6 +24,8 @@ namespace {
 // Rays that a thread traces between two looks at messages: some hundred microseconds, and more
 // where threads wait for each other at the end of it.
 constexpr std::uint64_t kRaysAtOnce = 512, kRaysAtOnceOfSeveral = 2048;
+// Rays that wait, at least, where they are divided for threads that have none.
+constexpr std::uint64_t kLeastToDivide = 512;
 // Wavefronts that threads take at once: enough for all to come to their number of rays.
 constexpr std::size_t kWavefrontsForThread = 8;
 
@@ -100,8 +102,18 @@ void RayPool::begin(std::uint32_t number) {
   }
 }
 
+// Where there are fewer wavefronts than threads: what other ranks would get, threads get.
+void RayPool::divide_among_threads() {
+  while (waiting_.size() < threads_ && waiting_rays_ >= kLeastToDivide) {
+    const std::size_t before = waiting_.size();
+    put(release(waiting_rays_ / 2).message.as<std::byte>());
+    if (waiting_.size() == before) return;
+  }
+}
+
 bool RayPool::advance() {
   if (waiting_.empty()) return false;
+  divide_among_threads();
   const std::size_t count = std::min(waiting_.size(), threads_ * kWavefrontsForThread);
   const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(count);
   std::vector<Wavefront> taken(std::make_move_iterator(waiting_.begin()),

@@ -83,6 +83,7 @@ class RayPool final : public loadbalance::DivisibleWork {
     double seconds = 0.0;
   };
 
+  void divide_among_threads();
   std::uint64_t trace(Wavefront& wavefront, std::uint64_t most);
   void finish(Wavefront& wavefront);
   void scatter(Wavefront& wavefront);
