@@ -173,6 +173,27 @@ void find_domain(Task& task) {
   throw std::invalid_argument("the segments enclose nothing");
 }
 
+// Throws std::length_error if triangles of the domain are to be so small that all vertices there
+// may be are too few for them, before most of these are made.
+void check_area(const RefinementMesh& mesh, const RefineOptions& options) {
+  if (options.max_area <= 0) return;
+  double area = 0;
+  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
+    if (mesh.mesh.is_dead(t) || !mesh.is_inside(t)) continue;
+    const glm::dvec2& a = mesh.points[mesh.mesh.vertex(t, 0)];
+    const glm::dvec2 b = mesh.points[mesh.mesh.vertex(t, 1)] - a,
+                     c = mesh.points[mesh.mesh.vertex(t, 2)] - a;
+    area += (b.x * c.y - b.y * c.x) / 2;
+  }
+  // There are fewer than two triangles for each vertex. A little less, for rounding.
+  constexpr double kTriangles = 2 * (1 + 0x1p-20);
+  const std::size_t most = most_vertices(options);
+  if (area / options.max_area > kTriangles * static_cast<double>(most)) {
+    throw std::length_error("triangles of so small an area take more than " + std::to_string(most) +
+                            " points");
+  }
+}
+
 // Flips as internal::flip() does, and keeps marks of edges. Those of the flipped edge go.
 void flip_with_marks(RefinementMesh& mesh, CornerNumber corner) {
   const CornerNumber beyond = mesh.mesh.neighbour(corner);
@@ -320,6 +341,7 @@ Refined refine(const Outline& outline, const RefineOptions& options) {
   recover_segments(mesh, segments_of(task), limits, task.counts);
   std::vector<SmallCorner> corners = internal::find_small_corners(mesh);
   find_domain(task);
+  check_area(mesh, options);
   const internal::TriangleBounds bounds(options.min_angle, options.max_area, way.measure);
   way.run(mesh, bounds, limits, task.counts);
   make_delaunay(mesh);

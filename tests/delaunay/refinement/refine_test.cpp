@@ -377,6 +377,16 @@ TEST(Refine, AsManyPointsAsAreNeededSuffice) {
   }
 }
 
+TEST(Refine, AreasThatTakeTooManyPointsAreRefusedAtOnce) {
+  for (const RefinementMethod& method : refinement_methods()) {
+    parallel::Progress progress;
+    RefineOptions options{.max_area = 1e-30, .method = std::string(method.name)};
+    options.progress = &progress;
+    EXPECT_THROW(refine(square(), options), std::length_error) << method.name;
+    EXPECT_EQ(progress.done(), 0U) << method.name;
+  }
+}
+
 TEST(Refine, ArgumentsThatCannotBe) {
   EXPECT_THROW(refine(square(), {.min_angle = 31}), std::invalid_argument);
   EXPECT_THROW(refine(square(), {.min_angle = -1}), std::invalid_argument);
