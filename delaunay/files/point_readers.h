@@ -78,6 +78,11 @@ NodeTable find_counted_rows(const Input& input, const char* what, TextPlace begi
 // The number of the first row: 0 or 1.
 std::int64_t first_number(const Input& input, const NodeTable& table);
 
+// The next field as a number counted from `base`; one below it is beyond all that there are.
+inline std::uint64_t number_from(std::int64_t base, Fields& fields) {
+  return static_cast<std::uint64_t>(fields.integer()) - static_cast<std::uint64_t>(base);
+}
+
 // Points of dimension 2 or 3, numbered from `base`; the first attribute of points of the plane is
 // their z.
 PointCloud read_points_of(const Input& input, const NodeTable& table, std::int64_t base);

@@ -83,8 +83,8 @@ std::vector<std::uint32_t> read_elements(const Input& elements, const NodeTable&
   for_each_row(elements, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
     fields.integer();
     for (std::size_t k = 0; k < corners; ++k) {
-      const std::int64_t vertex = fields.integer() - base;
-      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= points) {
+      const std::uint64_t vertex = number_from(base, fields);
+      if (vertex >= points) {
         fields.fail("refers to a point that is not there");
       }
       vertices[i * corners + k] = static_cast<std::uint32_t>(vertex);

@@ -30,8 +30,8 @@ std::vector<std::array<std::uint32_t, 2>> read_segments(const Input& input, cons
   for_each_row(input, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
     fields.integer();
     for (std::uint32_t& end : segments[i]) {
-      const std::int64_t row = fields.integer() - base;
-      if (row < 0 || static_cast<std::uint64_t>(row) >= points) {
+      const std::uint64_t row = number_from(base, fields);
+      if (row >= points) {
         fields.fail("refers to a point that is not there");
       }
       end = static_cast<std::uint32_t>(row);

@@ -47,6 +47,7 @@ TEST(Outline, BrokenFilesAreRefusedWithTheirLine) {
       {"3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n", "no segments"},
       {"3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n2 0\n0 0 1\n", "line 5"},
       {"3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n1 0\n0 0 3\n", "line 6: refers to a point"},
+      {"2 2 0 0\n1 0 0\n2 1 0\n1 0\n1 1 -9223372036854775808\n", "line 5: refers to a point"},
       {"3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n1 0\n0 0\n", "line 6: the line ends too early"},
       {"3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n-1 0\n", "line 5: a negative number"},
       {"3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n0\n1\n0 nan 1\n", "line 7: not a finite number"},
