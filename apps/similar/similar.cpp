@@ -48,8 +48,12 @@ std::array<double, scenes::kShapeFeatures> features_of(Session& session,
   return *features;
 }
 
+// What rounding of corners makes of a feature of one shape.
+constexpr double kLeastDeviation = 1e-6;
+
 // The first features of all models, those of `to` last, each over its deviation among the models,
-// so that none outweighs the others.
+// so that none outweighs the others. A feature in which they differ by rounding alone stays as it
+// is.
 delaunay::PointTable feature_points(Session& session, const SimilarOptions& options) {
   delaunay::PointTable points{options.dim, {}};
   const auto add = [&](const std::string& model) {
@@ -69,7 +73,7 @@ delaunay::PointTable feature_points(Session& session, const SimilarOptions& opti
       squares += off * off;
     }
     const double deviation = std::sqrt(squares / n);
-    if (!(deviation > 0)) continue;
+    if (!(deviation > kLeastDeviation)) continue;
     for (std::size_t i = 0; i < points.size(); ++i) points.coordinates[i * dim + k] /= deviation;
   }
   return points;
@@ -119,7 +123,13 @@ int run(Session& session, const SimilarOptions& options) {
     const ProgressBar bar(session, "similar");
     points = feature_points(session, options);
   }
-  const delaunay::Triangulation triangulation = triangulate_dimensions(points.view(), points.dim);
+  delaunay::Triangulation triangulation;
+  {
+    const ProgressBar bar(session, "triangulate");
+    session.progress.start(points.size());
+    triangulation =
+        triangulate_dimensions(points.view(), points.dim, /*seed=*/1, &session.progress);
+  }
   const auto found =
       nearest_rows(points.view(), triangulation, static_cast<std::uint32_t>(options.models.size()),
                    static_cast<std::size_t>(options.count));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <queue>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,16 +22,16 @@ namespace {
 class NearestSearch {
  public:
   NearestSearch(PointView<double> points, const Triangulation& triangulation)
-      : points_(points), dim_(triangulation.dim) {
+      : points_(points), vertices_(triangulation.vertices), dim_(triangulation.dim) {
     find_equal();
+    first_.resize(points.size() + 1);
+    for (const std::uint32_t vertex : vertices_) ++first_[lowest_[vertex] + 1];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    incident_.resize(vertices_.size());
     const auto corners = static_cast<std::size_t>(dim_) + 1;
-    neighbours_.resize(points.size());
-    for (std::size_t first = 0; first < triangulation.vertices.size(); first += corners) {
-      for (std::size_t i = 0; i < corners * corners; ++i) {
-        const std::uint32_t a = triangulation.vertices[first + i / corners],
-                            b = triangulation.vertices[first + i % corners];
-        if (a != b) neighbours_[lowest_[a]].push_back(lowest_[b]);
-      }
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      incident_[next[lowest_[vertices_[i]]]++] = static_cast<std::uint32_t>(i / corners);
     }
     is_flat_ = triangulation.vertices.empty();
   }
@@ -42,6 +43,7 @@ class NearestSearch {
       is_seen[vertex] = true;
       queue_.push({distance(of, vertex), vertex});
     };
+    const auto corners = static_cast<std::size_t>(dim_) + 1;
     std::vector<NearRow> found;
     see(lowest_[of]);
     if (is_flat_) {
@@ -53,7 +55,10 @@ class NearestSearch {
       for (const std::uint32_t row : equal_[vertex]) {
         if (row != of && found.size() < count) found.push_back({row, far});
       }
-      for (const std::uint32_t next : neighbours_[vertex]) see(next);
+      for (std::size_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
+        for (std::size_t k = 0; k < corners; ++k)
+          see(lowest_[vertices_[std::size_t{incident_[i]} * corners + k]]);
+      }
     }
     queue_ = {};
     return found;
@@ -90,11 +95,14 @@ class NearestSearch {
 
   using Near = std::pair<double, std::uint32_t>;
   PointView<double> points_;
+  std::span<const std::uint32_t> vertices_;
   int dim_;
   bool is_flat_ = false;
   std::vector<std::uint32_t> lowest_;              // per row: of those that are equal
   std::vector<std::vector<std::uint32_t>> equal_;  // per lowest row: all of them
-  std::vector<std::vector<std::uint32_t>> neighbours_;
+  // Per lowest row i the simplices around it: incident_[first_[i]] to incident_[first_[i + 1] - 1].
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> incident_;
   std::priority_queue<Near, std::vector<Near>, std::greater<>> queue_;
 };
 

@@ -136,5 +136,22 @@ TEST(SimilarCommand, SaysWhatIsMissing) {
   EXPECT_NE(ran.out.find("0.0000  flat.obj"), std::string::npos) << ran.out;
 }
 
+// Means of equal features differ from them by rounding, which is no measure of anything.
+TEST(SimilarCommand, DistancesFromCopiesOfOneModelAreThoseOfItsFeatures) {
+  const Folder folder;
+  folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("long.obj", "v 0 0 0\nv 7 0 0\nv 0 1 0\nf 1 2 3\n");
+  std::string models;
+  for (int copies = 1; copies <= 12; ++copies) {
+    models += " flat.obj";
+    const Ran ran =
+        run("delray similar" + models + " --to long.obj -n 50 --stats -", folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const json told = json::parse(ran.out);
+    ASSERT_EQ(told["models"].size(), static_cast<std::size_t>(copies));
+    for (const json& model : told["models"]) EXPECT_LT(model["distance"], 10) << copies;
+  }
+}
+
 }  // namespace
 }  // namespace delray::tests
