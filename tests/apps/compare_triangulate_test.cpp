@@ -212,6 +212,32 @@ TEST(CompareTriangulate, LivesWithFewPointsAndFlatOnes) {
   }
 }
 
+// By --stats and on the page; on points that take no time.
+TEST(CompareTriangulate, TellsWhichMethodsAreMissing) {
+  const Folder folder;
+  std::string equal;
+  for (int row = 0; row < 20'001; ++row) equal += "1 1\n";
+  folder.write("equal.xyz", equal);
+  const Ran ran =
+      run("delray compare triangulate equal.xyz --threads 1 --quick -q -o report.html --stats -",
+          folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  const std::string page = folder.read("report.html");
+  std::set<std::string> run;
+  for (const Json& row : json["rows"]) run.insert(row["method"].get<std::string>());
+  std::size_t missing = 0;
+  for (const delaunay::Method& method : delaunay::methods()) {
+    if (std::count(method.dims.begin(), method.dims.end(), 2) == 0) continue;
+    if (run.count(std::string(method.name)) != 0) continue;
+    const std::string told = std::string(method.name) + " (slow above 20000 points)";
+    EXPECT_EQ(json["left_out"][missing++], told);
+    EXPECT_NE(page.find(told), std::string::npos) << told;
+  }
+  EXPECT_GT(missing, 0U);
+  EXPECT_EQ(json["left_out"].size(), missing);
+}
+
 TEST(CompareTriangulate, RefusesWhatItCannotDo) {
   const Folder folder;
   folder.write("p.xyz", "0 0\n1 0\n0 1\n");

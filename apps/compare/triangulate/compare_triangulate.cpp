@@ -56,24 +56,23 @@ constexpr std::size_t kMostForSlow = 20'000;  // points
 constexpr std::string_view kSequential = "insertion", kOfSequential = "dag";
 
 // The methods of a dimension that the request names; without names, those that do not take too
-// long.
+// long, and the others told to `left_out`.
 std::vector<const delaunay::Method*> compared_methods(const TriangulateRequest& request,
-                                                      std::size_t points, int dim) {
+                                                      std::size_t points, int dim,
+                                                      std::vector<std::string>& left_out) {
   std::vector<const delaunay::Method*> result;
-  std::string left_out;
   for (const delaunay::Method& method : delaunay::methods()) {
     if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
     if (!request.methods.empty()) {
       if (std::ranges::find(request.methods, method.name) == request.methods.end()) continue;
     } else if (method.slow && points > kMostForSlow) {
-      left_out += (left_out.empty() ? "" : ", ") + std::string(method.name);
+      left_out.push_back(fmt::format("{} (slow above {} points)", method.name, kMostForSlow));
       continue;
     }
     result.push_back(&method);
   }
   if (!left_out.empty()) {
-    spdlog::info("left out above {} points, unless --method names them: {}", kMostForSlow,
-                 left_out);
+    spdlog::info("left out, unless --method names them: {}", fmt::join(left_out, ", "));
   }
   return result;
 }
@@ -87,11 +86,12 @@ std::vector<int> searching_threads(const delaunay::Method& method, int threads) 
   return result;
 }
 
-// Every way to triangulate that goes with the request.
-std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size_t points, int dim,
+// Every way to triangulate by these methods that goes with the request.
+std::vector<delaunay::Options> ways(const std::vector<const delaunay::Method*>& methods,
+                                    const TriangulateRequest& request, int dim,
                                     const std::vector<int>& threads, int shown_threads) {
   std::vector<delaunay::Options> result;
-  for (const delaunay::Method* const entry : compared_methods(request, points, dim)) {
+  for (const delaunay::Method* const entry : methods) {
     const delaunay::Method& method = *entry;
     delaunay::Options how;
     how.dim = dim;
@@ -192,7 +192,8 @@ class TriangulationRuns {
     result_.shown_threads = result_.threads.front();
     for (const int count : result_.threads)
       if (count <= kMostShownThreads) result_.shown_threads = count;
-    ways_ = ways(request, points.size(), dim, result_.threads, result_.shown_threads);
+    ways_ = ways(compared_methods(request, points.size(), dim, result_.left_out), request, dim,
+                 result_.threads, result_.shown_threads);
   }
 
   TriangulateComparison run() {

@@ -104,8 +104,7 @@ Html left_out(const TriangulateComparison& comparison) {
   for (const std::string& name : comparison.left_out) names += (names.empty() ? "" : "; ") + name;
   if (names.empty()) return {};
   return paragraph(
-      "Left out, as fewer points took too long (--method names what is to be run "
-      "nevertheless): " +
+      "Left out, as they would take too long (--method names what is to be run nevertheless): " +
       names + ".");
 }
 
