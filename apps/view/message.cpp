@@ -111,6 +111,7 @@ Message parse_camera(Members& members) {
   camera.fov = members.number("fov", kLeastAngle, kMostAngle);
   camera.height = members.number("height", 0, kFarthest);
   camera.clip = members.number("clip", 0, kFarthest);
+  if (camera.clip < kNearestClip) camera.clip = 0;
   if (camera.eye == camera.at) throw BadMessage("eye and at are one place");
   if (camera.up == glm::vec3(0.0F)) throw BadMessage("up has no length");
   return message;

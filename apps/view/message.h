@@ -22,7 +22,9 @@ struct PageCamera {
   glm::vec3 eye{0, 0, 1}, at{0, 0, 0}, up{0, 1, 0};
   float fov = 40;    // vertical, degrees
   float height = 0;  // of an orthographic camera's frame; 0: perspective
-  float clip = 0;    // distance of a clipping plane along the view; 0: none
+  // Distance of a clipping plane along the view; 0: none. One nearer than kNearestClip hides
+  // nothing, and is none.
+  float clip = 0;
 };
 
 // The size of the picture, in pixels of the screen.
@@ -70,8 +72,9 @@ using Message = std::variant<HelloMessage, SizeMessage, CameraMessage, OptionMes
 inline constexpr std::size_t kLongestMessage = 16384;  // bytes
 inline constexpr std::size_t kLongestValue = 256;      // bytes of an option's name or value
 inline constexpr std::size_t kMostOptions = 64;
-inline constexpr int kLargestPage = 8192;  // pixels a side
-inline constexpr float kFarthest = 1e18F;  // of any coordinate
+inline constexpr int kLargestPage = 8192;      // pixels a side
+inline constexpr float kFarthest = 1e18F;      // of any coordinate
+inline constexpr float kNearestClip = 1e-18F;  // that --clip takes
 
 // JSON: an object with "type" and what that type has; no more, no less. Numbers are finite and in
 // range, eye and at differ, up has a length. Throws BadMessage. Any bytes may be given.

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "raster/strategies.h"
+#include "raytrace/distribution.h"
 #include "scenes/generate.h"
 #include "scenes/write_glb.h"
 #include "tests/support/run_program.h"
@@ -199,18 +202,28 @@ TEST(RenderCommand, AClipIsOnePictureHoweverTheWorkIsShared) {
   const std::string size = "delray render gen:city:4000 -o a.png --size 121x77 ";
   // From above: all that reaches higher than 15 is cut off.
   const std::string base = size + "--camera 0,200,0,0,0,0,0,0,1,60 ";
-  for (const std::string engine : {"", "--engine raytrace --integrator direct "}) {
+  const std::string rays = "--engine raytrace --integrator direct ";
+  std::map<std::string, std::string> hashes;  // of what is cut, by engine
+  for (const std::string& engine : {std::string(), rays}) {
     const std::string whole = statistics(base + engine, folder)["image"]["hash"];
     const json cut = statistics(base + engine + "--clip 185", folder);
+    hashes[engine] = cut["image"]["hash"];
     EXPECT_EQ(cut["options"]["clip"], 185);
-    EXPECT_NE(cut["image"]["hash"], whole);
+    EXPECT_NE(hashes[engine], whole);
     EXPECT_EQ(statistics(base + engine + "--clip 1e-3", folder)["image"]["hash"], whole);
     EXPECT_EQ(statistics(base + engine + "--clip 185 --ranks 3", folder)["image"]["hash"],
-              cut["image"]["hash"]);
+              hashes[engine]);
   }
-  EXPECT_EQ(
-      statistics(base + "--strategy sort-first --ranks 2 --clip 185", folder)["image"]["hash"],
-      statistics(base + "--strategy sort-middle --ranks 2 --clip 185", folder)["image"]["hash"]);
+  const auto is_same = [&](const std::string& engine, const std::string& option) {
+    EXPECT_EQ(statistics(base + engine + option + " --ranks 2 --threads 1 --clip 185",
+                         folder)["image"]["hash"],
+              hashes[engine])
+        << option;
+  };
+  for (const raster::Strategy& strategy : raster::strategies())
+    is_same("", "--strategy " + std::string(strategy.name));
+  for (const raytrace::Distribution& data : raytrace::distributions())
+    is_same(rays, "--data " + std::string(data.name));
   EXPECT_EQ(run(size + "--clip 0", folder.path()).exit_code, 2);
   EXPECT_EQ(run(size + "--clip -1", folder.path()).exit_code, 2);
 }

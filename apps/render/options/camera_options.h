@@ -20,8 +20,8 @@ struct CameraOptions {
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
-// Moves the near plane to where --clip wants it. An orthographic camera whose `far` is nearer than
-// that sees nothing.
+// Moves the near plane to where --clip wants it. Of an orthographic camera whose `far` is no
+// farther than that, scenes::make_view moves that one, too.
 void set_clip(const CameraOptions& options, scenes::Camera& camera);
 
 // Whether the camera is one that shows all of the scene, not one that somebody placed.

@@ -7,9 +7,16 @@
 namespace delray::apps::view {
 namespace {
 
-std::string camera(const std::string& eye = "[1,2,3]", const std::string& rest = "") {
+std::string camera(const std::string& eye = "[1,2,3]", const std::string& rest = "",
+                   const std::string& clip = "0") {
   return R"({"type":"camera","number":7,"moving":true,"eye":)" + eye +
-         R"(,"at":[0,0,0.5],"up":[0,0,1],"fov":40,"height":0,"clip":0)" + rest + "}";
+         R"(,"at":[0,0,0.5],"up":[0,0,1],"fov":40,"height":0,"clip":)" + clip + rest + "}";
+}
+
+std::string clipped(const std::string& clip) { return camera("[1,2,3]", "", clip); }
+
+float clip_of(const std::string& clip) {
+  return std::get<CameraMessage>(parse_message(clipped(clip))).camera.clip;
 }
 
 TEST(ViewMessage, ReadsEveryType) {
@@ -71,11 +78,30 @@ TEST(ViewMessage, RefusesWhatNoPageSends) {
       camera("[1,2]"),
       camera("[1,2,\"3\"]"),
       camera("[1,2,3]", R"(,"roll":1)"),
+      clipped("-1"),
+      clipped("-1e-30"),
+      clipped("NaN"),
+      clipped("null"),
+      clipped("\"2\""),
+      clipped("[2]"),
+      clipped("true"),
+      clipped("1.1e18"),
+      clipped("1e999"),
+      clipped("-1e999"),
+      clipped(""),
       std::string(100000, '['),
       "\xff\xfe{}",
   };
   for (const std::string& text : bad)
     EXPECT_THROW(parse_message(text), BadMessage) << text.substr(0, 200);
+}
+
+TEST(ViewMessage, AClipTooNearForClipIsNone) {
+  EXPECT_EQ(clip_of("2.5"), 2.5F);
+  EXPECT_EQ(clip_of("9e17"), 9e17F);
+  EXPECT_EQ(clip_of("2e-18"), 2e-18F);
+  for (const char* const near : {"0", "-0.0", "9e-19", "1e-30", "1e-300"})
+    EXPECT_EQ(clip_of(near), 0.0F) << near;
 }
 
 TEST(ViewMessage, RefusesMessagesThatAreTooLong) {
