@@ -19,6 +19,15 @@ namespace delray::loadbalance {
 
 namespace {
 
+void do_part(comm::Communicator& communicator, const SimulatedTasks& tasks, std::uint32_t task,
+             double part, SimulatedSchedule& result) {
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  const double seconds = tasks.seconds[task] * part;
+  communicator.work(comm::Work::seconds_e9, static_cast<std::uint64_t>(seconds * 1e9 + 0.5));
+  result.busy[rank] += seconds;
+  if (!tasks.rays.empty()) result.rays[rank] += static_cast<double>(tasks.rays[task]) * part;
+}
+
 // The units of tasks whose times are known, on one rank: pieces of tasks.
 class SimulatedUnits final : public DivisibleWork {
  public:
@@ -37,15 +46,11 @@ class SimulatedUnits final : public DivisibleWork {
 
   bool advance() override {
     if (pieces_.empty()) return false;
-    const auto rank = static_cast<std::size_t>(communicator_.rank());
     Piece& piece = pieces_.front();
     const std::uint64_t done = std::min(piece.units, kUnitsAtOnce), all = tasks_.units[piece.task];
     // A task without units takes its time all the same.
-    const double seconds = tasks_.seconds[piece.task] *
-                           (all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1.0);
-    communicator_.work(comm::Work::seconds_e9, static_cast<std::uint64_t>(seconds * 1e9 + 0.5));
-    result_.busy[rank] += seconds;
-    result_.units[rank] += done;
+    const double part = all > 0 ? static_cast<double>(done) / static_cast<double>(all) : 1.0;
+    do_part(communicator_, tasks_, piece.task, part, result_);
     waiting_ -= done;
     piece.units -= done;
     if (piece.home != communicator_.rank()) found_[piece.home] += done;
@@ -69,7 +74,7 @@ class SimulatedUnits final : public DivisibleWork {
       return piece.units == 0 && tasks_.units[piece.task] > 0;
     });
     if (taken.empty()) return released;
-    released.message = comm::Buffer::standing_for(released.units * tasks_.unit_bytes,
+    released.message = comm::Buffer::standing_for(bytes_of(released.units, tasks_.unit_bytes),
                                                   comm::Buffer::of(std::span<const Piece>(taken)));
     return released;
   }
@@ -89,13 +94,17 @@ class SimulatedUnits final : public DivisibleWork {
   std::vector<comm::Parcel> take_results() override {
     std::vector<comm::Parcel> parcels;
     for (const auto& [home, units] : std::exchange(found_, {}))
-      parcels.push_back(
-          {home, comm::Buffer::standing_for(units * tasks_.unit_result_bytes, comm::Buffer())});
+      parcels.push_back({home, comm::Buffer::standing_for(bytes_of(units, tasks_.unit_result_bytes),
+                                                          comm::Buffer())});
     return parcels;
   }
   void put_results(std::span<const std::byte>) override {}
 
  private:
+  static std::size_t bytes_of(std::uint64_t units, double each) {
+    return static_cast<std::size_t>(static_cast<double>(units) * each);
+  }
+
   // As many as a rank does between two looks at messages.
   static constexpr std::uint64_t kUnitsAtOnce = 512;
 
@@ -138,13 +147,14 @@ SimulatedSchedule simulate(const Schedule& schedule, const SimulatedTasks& tasks
   if (tasks.seconds.size() != count ||
       (!tasks.result_bytes.empty() && tasks.result_bytes.size() != count))
     throw std::invalid_argument("there are not as many times as tasks");
-  if (!tasks.units.empty() && tasks.units.size() != count)
-    throw std::invalid_argument("there are not as many numbers of units as tasks");
+  if ((!tasks.units.empty() && tasks.units.size() != count) ||
+      (!tasks.rays.empty() && tasks.rays.size() != count))
+    throw std::invalid_argument("there are not as many numbers of units, or of rays, as tasks");
   if (ranks < 1) throw std::invalid_argument("there is at least one rank");
   SimulatedSchedule result;
   result.ranks.resize(static_cast<std::size_t>(ranks));
   result.busy.resize(result.ranks.size());
-  result.units.resize(result.ranks.size());
+  result.rays.resize(result.ranks.size());
   result.owners.assign(count, -1);
   const std::uint64_t all_bytes =
       std::accumulate(tasks.result_bytes.begin(), tasks.result_bytes.end(), std::uint64_t{0});
@@ -163,10 +173,7 @@ SimulatedSchedule simulate(const Schedule& schedule, const SimulatedTasks& tasks
         result.owners[task] = rank;
         if (!tasks.result_bytes.empty()) mine += tasks.result_bytes[task];
         if (divides) return units.begin(task);
-        result.busy[at] += tasks.seconds[task];
-        if (!tasks.units.empty()) result.units[at] += tasks.units[task];
-        communicator.work(comm::Work::seconds_e9,
-                          static_cast<std::uint64_t>(tasks.seconds[task] * 1e9 + 0.5));
+        do_part(communicator, tasks, task, 1.0, result);
       });
       if (!tasks.result_bytes.empty()) gather_results(communicator, tasks, mine, all_bytes);
       if (rank == 0) result.frame_seconds = communicator.seconds();

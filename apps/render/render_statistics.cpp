@@ -120,6 +120,7 @@ void add_own(const raster::RankStatistics& rank, Json& row) {
 void add_own(const raytrace::RankStatistics& rank, Json& row) {
   constexpr const char* kKinds[] = {"work", "serve", "wait"};
   row["tasks_stolen"] = rank.tasks_stolen;
+  row["rays_stolen"] = rank.rays_stolen;
   row["rays"] = of_rays(rank.rays);
   row["data"] = {{"rays_sent", rank.rays_sent},
                  {"answers_sent", rank.answers_sent},

@@ -44,7 +44,8 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
     SCOPED_TRACE(row.dump());
     const int ranks = row["ranks"];
     rows.insert(row["schedule"].get<std::string>() + std::to_string(ranks));
-    for (const char* key : {"requests", "steals", "tasks_stolen", "messages", "bytes_total"})
+    for (const char* key :
+         {"requests", "steals", "tasks_stolen", "rays_stolen", "messages", "bytes_total"})
       ASSERT_TRUE(row[key].is_number_unsigned()) << key;
     EXPECT_GE(row["imbalance_rays"], 1);
     EXPECT_LE(row["imbalance_rays"], ranks * 1.0001);

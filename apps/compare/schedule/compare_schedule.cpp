@@ -34,28 +34,22 @@ constexpr std::size_t kSampleFrames = 3;
 // Frames of a scene that is shared out: the last of them finds caches as the others left them.
 constexpr int kDistributedFrames = 2;
 
-ScheduleOver summary_of(const std::string& network, const loadbalance::SimulatedSchedule& run,
-                        const std::vector<Tile>& tiles) {
+ScheduleOver summary_of(const std::string& network, const loadbalance::SimulatedSchedule& run) {
   ScheduleOver result;
   result.network = network;
   result.seconds = run.seconds;
-  std::vector<double> rays(run.ranks.size()), busy(run.ranks.size());
-  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
-    const auto owner = static_cast<std::size_t>(run.owners[tile]);
-    rays[owner] += static_cast<double>(tiles[tile].rays);
-    busy[owner] += tiles[tile].seconds.median;
-  }
   for (const loadbalance::RankReport& rank : run.ranks) {
     result.requests += rank.requests;
     result.steals += rank.steals;
     result.tasks_stolen += rank.tasks_stolen;
+    result.rays_stolen += rank.units_stolen;
     result.messages += rank.messages;
     result.bytes += rank.bytes_sent;
   }
-  result.ray_imbalance = loadbalance::imbalance(rays);
-  result.time_imbalance = loadbalance::imbalance(busy);
+  result.ray_imbalance = loadbalance::imbalance(run.rays);
+  result.time_imbalance = loadbalance::imbalance(run.busy);
   const double all = run.seconds * static_cast<double>(run.ranks.size());
-  if (all > 0) result.idle = 1 - std::accumulate(busy.begin(), busy.end(), 0.0) / all;
+  if (all > 0) result.idle = 1 - std::accumulate(run.busy.begin(), run.busy.end(), 0.0) / all;
   return result;
 }
 
@@ -209,6 +203,7 @@ class ScheduleRuns {
       bytes_.push_back(sizeof(raytrace::TileCost) + static_cast<std::uint64_t>(tile.pixels.area()) *
                                                         (sizeof(image::RgbaF) + sizeof(float)));
       seconds_.push_back(tile.seconds.median);
+      rays_.push_back(tile.rays);
       result_.rays += tile.rays;
       result_.seconds += tile.seconds.median;
     }
@@ -244,11 +239,24 @@ class ScheduleRuns {
     }
   }
 
+  // A ray that goes to another rank is followed there by the others of its sample.
+  double samples_per_ray() const {
+    const double samples = static_cast<double>(options_.width) * options_.height * options_.samples;
+    return samples / static_cast<double>(std::max<std::uint64_t>(1, result_.rays));
+  }
+
   loadbalance::SimulatedSchedule simulated(const loadbalance::Schedule& schedule, int ranks,
                                            const comm::NamedNetwork& named,
                                            const std::vector<double>& seconds) const {
-    const loadbalance::SimulatedTasks tasks{blocks_.grid(), seconds, bytes_, sizeof(std::uint64_t),
-                                            copy_seconds_};
+    const loadbalance::SimulatedTasks tasks{blocks_.grid(),
+                                            seconds,
+                                            bytes_,
+                                            sizeof(std::uint64_t),
+                                            copy_seconds_,
+                                            rays_,
+                                            samples_per_ray() * raytrace::kMovedRayBytes,
+                                            samples_per_ray() * raytrace::kMovedResultBytes,
+                                            rays_};
     return loadbalance::simulate(schedule, tasks, ranks, named.network,
                                  raytrace::tile_schedule(blocks_.grid().count(), ranks, 1));
   }
@@ -257,7 +265,7 @@ class ScheduleRuns {
     ComparedSchedule row{schedule.name, ranks, {}, {}};
     for (const comm::NamedNetwork* named : networks()) {
       loadbalance::SimulatedSchedule run = simulated(schedule, ranks, *named, seconds_);
-      ScheduleOver over = summary_of(named->name, run, result_.tiles);
+      ScheduleOver over = summary_of(named->name, run);
       std::vector<double> times = {over.seconds};
       for (const std::vector<double>& sample : samples_)
         times.push_back(simulated(schedule, ranks, *named, sample).seconds);
@@ -293,6 +301,7 @@ class ScheduleRuns {
         for (const raytrace::RankStatistics& rank : frame.statistics.ranks) {
           traced.requests += rank.requests;
           traced.steals += rank.steals;
+          traced.rays_stolen += rank.rays_stolen;
           traced.messages += rank.messages;
         }
         traced.hash = image::hash(finished(std::move(frame.image)));
@@ -348,6 +357,7 @@ class ScheduleRuns {
   raytrace::RenderOptions options_;
   loadbalance::Blocks blocks_;
   std::vector<double> seconds_;       // of tiles
+  std::vector<std::uint64_t> rays_;   // of tiles
   std::vector<std::uint64_t> bytes_;  // of tiles' pixels on the way to rank 0
   const double copy_seconds_ = copy_seconds_per_byte();
   std::vector<std::vector<double>> samples_;  // of tiles in single frames

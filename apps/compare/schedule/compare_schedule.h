@@ -31,9 +31,10 @@ struct ScheduleRequest : SceneComparison {
 struct ScheduleOver {
   std::string network;
   std::uint64_t requests = 0, steals = 0, tasks_stolen = 0, messages = 0, bytes = 0;
-  double ray_imbalance = 1;   // rays of the rank that sends most over the mean
-  double time_imbalance = 1;  // the same of the time at tiles
-  double seconds = 0;         // until the last tile is done
+  std::uint64_t rays_stolen = 0;  // of tiles that other ranks had begun
+  double ray_imbalance = 1;       // rays of the rank that sends most over the mean
+  double time_imbalance = 1;      // the same of the time at tiles
+  double seconds = 0;             // until the last tile is done
   // The spread of `seconds`, over what tiles took in single frames, brought to the same time for
   // all of them: that of schedules differs where one is better in every frame.
   Spread spread;
@@ -51,7 +52,7 @@ inline constexpr std::array<const char*, 4> kScheduleParts = {"trace", "messages
 // Frames of ranks that are threads of this process.
 struct TracedFrames {
   Spread seconds;  // whole frames
-  std::uint64_t requests = 0, steals = 0, messages = 0;
+  std::uint64_t requests = 0, steals = 0, rays_stolen = 0, messages = 0;
   double ray_imbalance = 1;
   std::string hash;
 };

@@ -32,11 +32,13 @@ Json row_of(const ComparedSchedule& row, double alone) {
               {"requests", counted.requests},
               {"steals", counted.steals},
               {"tasks_stolen", counted.tasks_stolen},
+              {"rays_stolen", counted.rays_stolen},
               {"messages", counted.messages},
               {"bytes_total", counted.bytes},
               {"imbalance_rays", counted.ray_imbalance}};
   one["traced"] = row.traced ? Json({{"requests", row.traced->requests},
                                      {"steals", row.traced->steals},
+                                     {"rays_stolen", row.traced->rays_stolen},
                                      {"messages", row.traced->messages},
                                      {"imbalance_rays", row.traced->ray_imbalance}})
                              : Json(nullptr);
@@ -59,6 +61,7 @@ Json row_of(const ComparedSchedule& row, double alone) {
          {"imbalance_rays", over.ray_imbalance},
          {"requests", over.requests},
          {"steals", over.steals},
+         {"rays_stolen", over.rays_stolen},
          {"messages", over.messages}});
   }
   one["image_hash"] = row.traced ? Json(row.traced->hash) : Json(nullptr);
@@ -131,9 +134,9 @@ Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepare
 }
 
 TextTable schedule_table(const ScheduleComparison& comparison) {
-  std::vector<std::string> head = {"ranks",         "schedule", "requests",
-                                   "steals",        "messages", "KiB",
-                                   "rays max/mean", "frame ms", "frame from..to ms"};
+  std::vector<std::string> head = {"ranks",       "schedule",         "requests", "steals",
+                                   "rays stolen", "messages",         "KiB",      "rays max/mean",
+                                   "frame ms",    "frame from..to ms"};
   for (const ScheduleOver& over : comparison.rows.front().over)
     head.push_back(over.network + " ms, predicted");
   TextTable table = {std::move(head)};
@@ -144,6 +147,7 @@ TextTable schedule_table(const ScheduleComparison& comparison) {
         row.schedule,
         std::to_string(counted.requests),
         std::to_string(counted.steals),
+        std::to_string(counted.rays_stolen),
         std::to_string(counted.messages),
         fmt::format("{:.1f}", static_cast<double>(counted.bytes) / 1024),
         ratio_text(counted.ray_imbalance),

@@ -365,6 +365,7 @@ Html traffic(const ScheduleComparison& comparison) {
                      chart("Steals: messages with tiles of another's share", "messages",
                            &ScheduleOver::steals),
                      chart("Tiles stolen", "tiles", &ScheduleOver::tasks_stolen),
+                     chart("Rays stolen of tiles in progress", "rays", &ScheduleOver::rays_stolen),
                      chart("All messages of the schedule", "messages", &ScheduleOver::messages)}) +
          paragraph(
              "Counted on the simulated machine, without those that bring pixels to rank 0. "

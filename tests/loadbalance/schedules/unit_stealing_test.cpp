@@ -162,24 +162,24 @@ TEST(SimulatedSchedule, DividesTasksWithUnits) {
   const TaskGrid grid{8, 1};
   const std::vector<double> seconds = {1e-3, 1e-3, 80e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3};
   const std::vector<std::uint64_t> units = {1000, 1000, 80000, 1000, 1000, 1000, 1000, 1000};
-  const SimulatedTasks tasks{grid, seconds, {}, 0, 0, units, 100, 20};
+  const SimulatedTasks tasks{grid, seconds, {}, 0, 0, units, 100, 20, units};
   for (const Schedule& schedule : schedules()) {
     SCOPED_TRACE(schedule.name);
     const SimulatedSchedule run = simulate(schedule, tasks, 4, {});
-    std::uint64_t done = 0, stolen = 0, bytes = 0;
-    double busy = 0;
+    std::uint64_t stolen = 0, bytes = 0;
+    double done = 0, busy = 0;
     for (std::size_t k = 0; k < 4; ++k) {
-      done += run.units[k];
+      done += run.rays[k];
       busy += run.busy[k];
       stolen += run.ranks[k].units_stolen;
       bytes += run.ranks[k].bytes_sent;
     }
-    EXPECT_EQ(done, 87000U);
+    EXPECT_NEAR(done, 87000, 1e-6);
     EXPECT_NEAR(busy, 87e-3, 1e-9);
     if (schedule.divides) {
       EXPECT_LT(run.seconds, 1.2 * 87e-3 / 4);  // bytes take time as well
       EXPECT_GT(stolen, 40000U);
-      EXPECT_GT(bytes, 120 * stolen - 20 * stolen);
+      EXPECT_GT(bytes, 100 * stolen);
     } else {
       EXPECT_GT(run.seconds, 79e-3);
       EXPECT_EQ(stolen, 0U);
