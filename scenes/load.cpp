@@ -1,5 +1,5 @@
 // The table of scene readers, and the steps of loading: read, identify, parse, drop what is
-// degenerate, order for locality, find the up axis.
+// degenerate, find the up axis, order for locality.
 #include "scenes/load.h"
 
 #include <algorithm>
@@ -53,14 +53,18 @@ const SceneReader* reader_of(Format format) {
 
 // `start` is the first megabyte of the file.
 Scene read(Format format, std::string_view start, const Source& source,
-           parallel::Progress* progress) {
+           const LoadOptions& options) {
   const SceneReader* const reader = reader_of(format);
   if (reader == nullptr) source.fail("", no_scene());
   Scene scene = reader->read(source);
   scene.files = internal::named_files(source);
-  if (progress) progress->advance();
+  if (options.progress) options.progress->advance();
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y
+  const char up = files::up_axis(start);
+  scene.z_up =
+      !says_up && (up == '\0' ? internal::guess_z_up(scene, format == Format::stl) : up == 'z');
+  if (options.on_read) options.on_read(scene);
   // Exporters of glTF order triangles for renderers.
   if (!says_up) {
     for (Mesh& mesh : scene.meshes) {
@@ -68,10 +72,7 @@ Scene read(Format format, std::string_view start, const Source& source,
       internal::order_for_locality(mesh);
     }
   }
-  const char up = files::up_axis(start);
-  scene.z_up =
-      !says_up && (up == '\0' ? internal::guess_z_up(scene, format == Format::stl) : up == 'z');
-  if (progress) progress->advance();
+  if (options.progress) options.progress->advance();
   return scene;
 }
 
@@ -85,7 +86,7 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   const std::string_view start = std::string_view(content).substr(0, kStart);
   const Format format = files::identify(start, content.size(), path).format;
   const Source source{path, content, warnings, options.memory, options.outside};
-  return read(format, std::string_view(content).substr(0, kStart), source, options.progress);
+  return read(format, std::string_view(content).substr(0, kStart), source, options);
 }
 
 Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings,
@@ -107,7 +108,7 @@ Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings
     const SceneReader* const reader = reader_of(format);
     if (!start.empty() && reader != nullptr && reader->in_parts) {
       if (options.progress) options.progress->advance();
-      return read(format, start, source, options.progress);
+      return read(format, start, source, options);
     }
   }
   std::string content = files::read_file(path, options.memory);

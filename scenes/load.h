@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ struct LoadOptions {
   // Whether buffers, textures and materials may lie outside of the scene's folder.
   files::Outside outside = files::Outside::refused;
   parallel::Progress* progress = nullptr;
+  // Called once with the scene as soon as it can be shown: all is there, but triangles are in the
+  // order of the file.
+  std::function<void(const Scene& scene)> on_read = {};
 };
 
 namespace internal {

@@ -96,7 +96,8 @@ LoadedScene from_points(const SceneInput& input, parallel::Progress* progress,
   delaunay::PointCloud& points = *cloud;
   to_metres(points, input.file.path);
   const ShowAs& how = shown_as(input, points, picture);
-  if (preview && points.size() > kPointsOfPreview) preview(coloured_preview(input, points));
+  if (points.size() > kPointsOfPreview)
+    offer(preview, [&] { return coloured_preview(input, points); });
   if (how.is_points()) return {as_points(input, points, how), cloud};
   merge_places(input.file, points);
   delaunay::Options options;
@@ -128,7 +129,7 @@ void require_memory_for_folder(const SceneInput& input) {
                  fmt::format("a picture of {} simplices in memory", index.simplices));
 }
 
-scenes::Scene from_mesh(const SceneInput& input) {
+scenes::Scene from_mesh(const SceneInput& input, const ScenePreview& preview) {
   const files::MemoryBudget memory = input.file.limits.budget();
   if (delaunay::is_mesh_folder(input.file.path)) require_memory_for_folder(input);
   delaunay::PointMesh mesh = delaunay::read_mesh(input.file.path, memory);
@@ -144,32 +145,46 @@ scenes::Scene from_mesh(const SceneInput& input) {
   }
   keep_corners(mesh.points, mesh.triangulation);
   to_metres(mesh.points, input.file.path);
-  return coloured(input, mesh.points, mesh.triangulation);
+  scenes::Scene scene = coloured(input, mesh.points, mesh.triangulation);
+  offer_coarse(preview, scene);
+  return scene;
 }
 
-scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
-  scenes::Scene scene;
-  if (scenes::is_generated(input.file.path)) {
-    try {
-      input.file.limits.budget().require(scenes::generated_bytes(input.file.path), input.file.path);
-      scene = scenes::generate(input.file.path);
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(error.what());
-    }
-  } else {
-    std::vector<std::string> warnings;
-    const InputLimits& limits = input.file.limits;
-    scene = scenes::load(
-        input.file.path, warnings,
-        {.memory = limits.budget(), .outside = limits.outside(), .progress = progress});
-    for (const std::string& warning : warnings) spdlog::warn(warning);
-  }
+// As the options want a scene to look.
+void set_look(const SceneInput& input, scenes::Scene& scene) {
   if (has_size(input) && !set_point_size(size_of(input), scene)) {
     throw UsageError(fmt::format("--point-size and --radius are for points and lines; {} has none",
                                  input.file.path));
   }
   set_up_axis(input, scene);
   if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
+}
+
+scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress,
+                     const ScenePreview& preview) {
+  const auto offer_some = [&](const scenes::Scene& whole) {
+    offer_coarse(preview, whole, [&](scenes::Scene& some) { set_look(input, some); });
+  };
+  scenes::Scene scene;
+  if (scenes::is_generated(input.file.path)) {
+    try {
+      input.file.limits.budget().require(scenes::generated_bytes(input.file.path), input.file.path);
+      scene = scenes::generate(input.file.path);
+      offer_some(scene);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(error.what());
+    }
+  } else {
+    std::vector<std::string> warnings;
+    const InputLimits& limits = input.file.limits;
+    scene = scenes::load(input.file.path, warnings,
+                         {.memory = limits.budget(),
+                          .outside = limits.outside(),
+                          .progress = progress,
+                          .on_read = offer_some});
+    for (const std::string& warning : warnings) spdlog::warn(warning);
+  }
+  set_look(input, scene);
   return scene;
 }
 
@@ -386,11 +401,11 @@ LoadedScene load_scene_and_points(const SceneInput& input, parallel::Progress* p
   }
   if (kind == InputKind::pack) return {unpacked(input), nullptr};
   refuse_options_of_points(input, kind);
-  if (kind == InputKind::mesh) return {from_mesh(input), nullptr};
+  if (kind == InputKind::mesh) return {from_mesh(input, preview), nullptr};
   if (input.exaggeration != 1) {
     throw UsageError(fmt::format("--exaggeration is for points; {} is a scene", input.file.path));
   }
-  return {loaded(input, progress), nullptr};
+  return {loaded(input, progress, preview), nullptr};
 }
 
 }  // namespace delray::apps

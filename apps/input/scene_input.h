@@ -1,7 +1,6 @@
 // A scene from whatever the user names: a scene file, a generated scene, points or a mesh of them.
 #pragma once
 
-#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -9,6 +8,7 @@
 
 #include "apps/input/inliers.h"
 #include "apps/input/point_input.h"
+#include "apps/input/scene_preview.h"
 #include "apps/input/show_as.h"
 #include "apps/session.h"
 #include "scenes/scene.h"
@@ -82,9 +82,8 @@ struct LoadedScene {
   scenes::Scene scene;
   std::shared_ptr<const delaunay::PointCloud> points;
 };
-// The same, with the points. Of many points `preview`, where there is one, gets a scene of some as
-// soon as they are read, before surfaces and sizes are made.
-using ScenePreview = std::function<void(scenes::Scene&& scene)>;
+// The same, with the points. Of much that takes long `preview`, where there is one, gets a scene
+// before all is done: of points some, as soon as they are read, of other scenes a coarse form.
 LoadedScene load_scene_and_points(const SceneInput& input, parallel::Progress* progress,
                                   const ScenePreview& preview);
 

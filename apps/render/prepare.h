@@ -37,6 +37,7 @@ struct Prepared {
   std::shared_ptr<const delaunay::PointCloud> file_points;
   bool lit_by_default = false;                // the last of the lights is the default one
   bool known_by_name = false;                 // the name of the scene alone tells what is in it
+  bool is_preview = false;                    // numbers of triangles are none of the scene's
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
   std::uint64_t points = 0;                   // and segments, of the whole scene
   double load_seconds = 0, build_seconds = 0;

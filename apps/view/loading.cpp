@@ -1,8 +1,6 @@
 // One thread loads, another tells how far it is; what there is is handed over under a lock.
 #include "apps/view/loading.h"
 
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 #include <utility>
 
@@ -16,19 +14,24 @@ ReportLoading::ReportLoading(Viewers& viewers, const parallel::Progress& progres
         constexpr std::chrono::milliseconds kBetween{200};
         std::unique_lock lock(mutex_);
         do {
-          viewers.set_progress("Loading", progress.done(), progress.total());
+          const std::uint64_t done = progress.done(), total = progress.total();
+          // Of what comes after all is read nobody knows how long it takes.
+          const bool loads = total == 0 || done < total;
+          viewers.set_progress(loads ? "Loading" : "Building", loads ? done : 0, loads ? total : 0);
         } while (!never_.wait_for(lock, stop, kBetween, [] { return false; }) &&
                  !stop.stop_requested());
       }) {}
 
 Loading::Loading(Viewers& viewers, int workers, const parallel::Progress& stop)
-    : viewers_(viewers), progress_(&stop), thread_([this, workers] { load(workers); }) {}
+    : viewers_(viewers),
+      progress_(&stop),
+      request_(viewers.request_of(viewers.begin_loading())),
+      thread_([this, workers] { load(workers); }) {}
 
 Loading::~Loading() { progress_.request_stop(); }
 
 void Loading::load(int workers) {
   try {
-    const RenderRequest request = viewers_.shared_request();
     const parallel::AllowThreads allowed(workers);
     parallel::Arena arena(workers);
     Loaded loaded;
@@ -37,10 +40,13 @@ void Loading::load(int workers) {
       const ReportLoading report(viewers_, progress_);
       PrepareOptions options;
       options.keep_points = true;
-      options.preview = [&](scenes::Scene&& some) { show(request, std::move(some)); };
-      loaded.prepared = arena.execute([&] { return prepare(request, &progress_, options); });
+      // Some of a scene is not posed.
+      if (request_.motion.pose_time.empty())
+        options.preview = [&](scenes::Scene&& some) { show(std::move(some)); };
+      loaded.prepared = arena.execute([&] { return prepare(request_, &progress_, options); });
     }
-    loaded.facts = arena.execute([&] { return facts_of(request, *loaded.prepared); });
+    loaded.facts = arena.execute(
+        [&] { return std::make_shared<const Json>(facts_of(request_, *loaded.prepared)); });
     const std::scoped_lock lock(mutex_);
     whole_ = std::move(loaded);
   } catch (...) {
@@ -50,20 +56,17 @@ void Loading::load(int workers) {
   end();
 }
 
-// Of a preview nobody depends: all of the scene says what is wrong.
-void Loading::show(const RenderRequest& request, scenes::Scene&& some) {
-  try {
-    RenderRequest plain = request;
-    plain.legend = false;
-    Loaded part;
-    part.prepared = prepare(plain, std::move(some));
-    part.facts = facts_of(plain, *part.prepared);
-    const std::scoped_lock lock(mutex_);
-    part_ = std::move(part);
-    changed_.notify_all();
-  } catch (const std::exception& error) {
-    spdlog::debug("no preview: {}", error.what());
-  }
+void Loading::show(scenes::Scene&& some) {
+  RenderRequest plain = request_;
+  plain.legend = false;
+  if (plain.light.is_picture()) plain.light = {};  // which may take long to read
+  Loaded part;
+  part.prepared = prepare(plain, std::move(some));
+  part.prepared->is_preview = true;
+  part.facts = std::make_shared<const Json>(facts_of(plain, *part.prepared));
+  const std::scoped_lock lock(mutex_);
+  part_ = std::move(part);
+  changed_.notify_all();
 }
 
 void Loading::end() {

@@ -27,7 +27,7 @@ class ReportLoading {
 // Loads as pages ask for now, on a thread of its own and workers, and tells pages how far it is.
 class Loading {
  public:
-  // `stop` ends it, and outlives it as `viewers` does.
+  // `stop` ends it, and outlives it as `viewers` does. Throws UsageError as make_request.
   Loading(Viewers& viewers, int workers, const parallel::Progress& stop);
   ~Loading();  // ends it
   Loading(const Loading&) = delete;
@@ -35,9 +35,9 @@ class Loading {
 
   struct Loaded {
     std::shared_ptr<Prepared> prepared;
-    Json facts;  // for pages: facts_of
-    bool is_whole =
-        false;  // else some of it, and `viewers` will have a task when the rest is there
+    std::shared_ptr<const Json> facts;  // for pages: facts_of
+    // Else some of it, and `viewers` will have a task when the rest is there.
+    bool is_whole = false;
   };
   // Waits for a part of it that can be shown, or for all. Throws what loading throws.
   Loaded first();
@@ -46,11 +46,12 @@ class Loading {
 
  private:
   void load(int workers);
-  void show(const RenderRequest& request, scenes::Scene&& some);
+  void show(scenes::Scene&& some);
   void end();
 
   Viewers& viewers_;
   parallel::Progress progress_;
+  RenderRequest request_;
   std::mutex mutex_;
   std::condition_variable changed_;
   Loaded part_, whole_;

@@ -111,7 +111,9 @@ const handlers = {
     scene = m;
     element('loading').textContent = '';
     if (length(by) > 0) {
+      const asPlaced = isAsPlaced();
       shift(by);
+      if (asPlaced) placed = {...camera};
       if (cutAt) cutAt = add(cutAt, by);
       picks = [];
       showFacts();
@@ -125,11 +127,13 @@ const handlers = {
     element('views').replaceChildren(new Option('View', ''), ...m.views.map(v => new Option(v, v)));
     if (!lastHeader) wait('Rendering');
   },
-  // A page that comes back keeps its camera.
+  // A page that comes back keeps its camera where it was moved, and so does one where only some of
+  // the scene was there before.
   camera: m => {
-    if (camera && !awaitsView) return sendCamera();
+    if (camera && !awaitsView && !isAsPlaced()) return sendCamera();
     awaitsView = false;
     camera = {eye: m.eye, at: m.at, up: m.up, fov: m.fov, height: m.height};
+    placed = {...camera};
     if (m.clip > 0) cutAt = add(camera.eye, times(axes().forward, m.clip));
     else if (cutAt) changed();
     showCut();
@@ -142,7 +146,8 @@ const handlers = {
   progress: m => tellProgress(m),
   error: m => { note(m.text); if (lastHeader) wait(''); },
 };
-let awaitsView = true;
+let awaitsView = true, placed = null;  // placed: the camera as the server has placed it
+const isAsPlaced = () => JSON.stringify(camera) === JSON.stringify(placed);
 
 const connect = () => {
   socket = new WebSocket('ws://' + location.host + '/socket' + location.search);

@@ -87,6 +87,21 @@ void add_point(const delaunay::PointCloud& points, const glm::dvec3& corner, Jso
   }
 }
 
+void add_numbers(const scenes::Scene& scene, const scenes::Pick& pick, Json& facts) {
+  const std::uint32_t mesh_number = scene.instances[pick.instance].mesh;
+  const scenes::Mesh& mesh = scene.meshes[mesh_number];
+  const glm::uvec3& corners = mesh.triangles[pick.triangle];
+  facts.push_back({kind_of(mesh), std::to_string(pick.triangle)});
+  facts.push_back({"instance", std::to_string(pick.instance)});
+  facts.push_back({"mesh", mesh.name.empty() ? std::to_string(mesh_number)
+                                             : fmt::format("{} ({})", mesh_number, mesh.name)});
+  if (mesh.has_triangles()) {
+    facts.push_back({"vertices", fmt::format("{}, {}, {}", corners.x, corners.y, corners.z)});
+  } else {
+    facts.push_back({"vertex", std::to_string(corners.y)});
+  }
+}
+
 std::uint32_t nearest_corner(const glm::uvec3& corners, const glm::vec3& weights) {
   int best = 0;
   for (int i = 1; i < 3; ++i)
@@ -104,23 +119,14 @@ Json picked(const Task& task, const Prepared& prepared) {
   const auto pick = scenes::pick(scene, view, task.pick.x * static_cast<float>(task.order.width),
                                  task.pick.y * static_cast<float>(task.order.height));
   if (!pick) return answer;
-  const std::uint32_t mesh_number = scene.instances[pick->instance].mesh;
-  const scenes::Mesh& mesh = scene.meshes[mesh_number];
+  const scenes::Mesh& mesh = scene.meshes[scene.instances[pick->instance].mesh];
   const glm::uvec3& corners = mesh.triangles[pick->triangle];
   Json facts = Json::array();
   // As heights were before they were stretched.
   const glm::dvec3 stretch(1, 1, task.order.look->still.scene.exaggeration);
   const glm::dvec3 measured = pick->position / stretch;
   facts.push_back({"coordinates", text_of(measured + scene.origin)});
-  facts.push_back({kind_of(mesh), std::to_string(pick->triangle)});
-  facts.push_back({"instance", std::to_string(pick->instance)});
-  facts.push_back({"mesh", mesh.name.empty() ? std::to_string(mesh_number)
-                                             : fmt::format("{} ({})", mesh_number, mesh.name)});
-  if (mesh.has_triangles()) {
-    facts.push_back({"vertices", fmt::format("{}, {}, {}", corners.x, corners.y, corners.z)});
-  } else {
-    facts.push_back({"vertex", std::to_string(corners.y)});
-  }
+  if (!prepared.is_preview) add_numbers(scene, *pick, facts);
   if (mesh.material < scene.materials.size()) {
     const std::string& name = scene.materials[mesh.material].name;
     facts.push_back({"material", name.empty() ? std::to_string(mesh.material)

@@ -85,11 +85,11 @@ class Root {
 
   // What a page can be told is wrong is found before the other ranks hear of the picture.
   bool begin(const Task& task, const Job& job) {
+    const bool builds = frames_.has_to_build(job);
+    if (builds) serving_.viewers->set_progress("Building what rays need", 0, 0);
     try {
-      if (frames_.has_to_build(job))
-        serving_.viewers->set_progress("Building what rays need", 0, 0);
       frames_.begin(job);
-      serving_.viewers->set_progress("", 0, 0);
+      if (builds) serving_.viewers->set_progress("", 0, 0);
       return true;
     } catch (const std::bad_alloc&) {
       tell(task.page, "out of memory");
@@ -98,7 +98,7 @@ class Root {
     } catch (const std::invalid_argument& error) {
       tell(task.page, error.what());
     }
-    serving_.viewers->set_progress("", 0, 0);
+    if (builds) serving_.viewers->set_progress("", 0, 0);
     serving_.viewers->done(task, 0, true);
     return false;
   }

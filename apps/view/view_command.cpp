@@ -138,13 +138,11 @@ class View {
                 [&](comm::Communicator& communicator) { run_over_mpi(communicator, launch); });
       return;
     }
-    Loading::Loaded shown, whole;
-    std::optional<Loading> loading;
     for (Job::Kind next = Job::Kind::reload; next != Job::Kind::end;) {
-      show_next(next, launch, loading, shown, whole);
+      while (!find_scene(next, launch)) next = Job::Kind::reload;
       launch = wanted(launch);
       run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
-        const Job::Kind kind = serve(communicator, serving(shown.prepared, launch));
+        const Job::Kind kind = serve(communicator, serving(shown_.prepared, launch));
         if (communicator.rank() == 0) next = kind;
       });
     }
@@ -174,31 +172,33 @@ class View {
   }
 
   // The scene that is shown next: some of one that is being loaded, all of it, or the same again.
-  // What cannot be loaded is told, and what was there stays; where nothing was, it is thrown.
-  void show_next(Job::Kind next, const Launch& launch, std::optional<Loading>& loading,
-                 Loading::Loaded& shown, Loading::Loaded& whole) {
+  // What cannot be loaded is told, and what was there stays. Where nothing was, it is thrown, or
+  // false where pages have asked for another scene than this one or the first.
+  bool find_scene(Job::Kind next, const Launch& launch) {
     try {
       if (next == Job::Kind::reload) {
         const int ranks = std::max(1, launch.ranks);
-        loading.reset();
-        loading.emplace(pages_->viewers, threads_per_rank(launch, ranks) * ranks,
-                        session_.progress);
-        shown = loading->first();
-      } else if (next == Job::Kind::take && loading) {
-        shown = loading->whole();
+        loading_.reset();
+        loading_.emplace(pages_->viewers, threads_per_rank(launch, ranks) * ranks,
+                         session_.progress);
+        shown_ = loading_->first();
+      } else if (next == Job::Kind::take && loading_) {
+        shown_ = loading_->whole();
       }
     } catch (const parallel::Interrupted&) {
       throw;
     } catch (const std::exception& error) {
-      if (!whole.prepared) throw;
-      pages_->viewers.refuse_shared(error.what());
-      shown = whole;
+      const bool is_another_left = pages_->viewers.refuse_scene(error.what());
+      if (!whole_.prepared && is_another_left) return false;
+      if (!whole_.prepared) throw;
+      shown_ = whole_;
     }
-    if (shown.is_whole) {
-      loading.reset();
-      whole = shown;
+    if (shown_.is_whole) {
+      loading_.reset();
+      whole_ = shown_;
     }
-    pages_->viewers.set_scene(shown.facts, shown.is_whole);
+    pages_->viewers.set_scene(*shown_.facts, shown_.is_whole);
+    return true;
   }
 
   // Every process has the scene whole, and loads it anew when rank 0 wants that.
@@ -213,7 +213,7 @@ class View {
 
   void reload(comm::Communicator& communicator, std::shared_ptr<Prepared>& prepared) {
     Job job;
-    if (pages_) job.options = pages_->viewers.shared_options();
+    if (pages_) job.options = pages_->viewers.begin_loading();
     job = broadcast(communicator, job);
     try {
       std::shared_ptr<Prepared> loaded = comm::all_or_none(communicator, comm::Phase::load, [&] {
@@ -229,7 +229,7 @@ class View {
       prepared = std::move(loaded);
     } catch (const comm::AgreedFailure&) {
       if (!prepared) throw;
-      if (pages_) pages_->viewers.refuse_shared("the scene cannot be shown so");
+      if (pages_) pages_->viewers.refuse_scene("the scene cannot be shown so");
     }
     if (pages_) pages_->viewers.set_scene(facts_of(request_.render, *prepared), true);
   }
@@ -238,6 +238,9 @@ class View {
   const ViewRequest& request_;
   Input input_;
   std::optional<Pages> pages_;  // of the first process
+  // Without mpirun: what is being loaded, what is shown, and the last scene that was whole.
+  std::optional<Loading> loading_;
+  Loading::Loaded shown_, whole_;
 };
 
 int run(Session& session, const CLI::App& command, ViewRequest request) {

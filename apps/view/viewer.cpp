@@ -73,7 +73,7 @@ void Viewer::place(const scenes::Camera& camera, float clip) {
   renew();
 }
 
-void Viewer::move(const CameraMessage& message, double now) {
+bool Viewer::move(const CameraMessage& message, double now) {
   const PageCamera& page = message.camera;
   const bool same = has_camera_ && page.eye == camera_.eye && page.at == camera_.at &&
                     page.up == camera_.up && page.fov == camera_.vertical_fov &&
@@ -81,7 +81,7 @@ void Viewer::move(const CameraMessage& message, double now) {
   camera_number_ = message.number;
   moving_ = message.moving;
   moved_at_ = now;
-  if (same) return;
+  if (same) return false;
   camera_.eye = page.eye;
   camera_.at = page.at;
   camera_.up = page.up;
@@ -93,6 +93,7 @@ void Viewer::move(const CameraMessage& message, double now) {
   camera_.name.clear();
   has_camera_ = true;
   renew();
+  return true;
 }
 
 void Viewer::set_look(std::shared_ptr<const Look> look, const Options& options) {

@@ -66,7 +66,8 @@ class Viewer {
   void resize(const SizeMessage& size);
   // A camera that the program chose, and the distance of its clipping plane; 0: none.
   void place(const scenes::Camera& camera, float clip);
-  void move(const CameraMessage& message, double now);
+  // Whether that is another camera than before.
+  bool move(const CameraMessage& message, double now);
   void set_look(std::shared_ptr<const Look> look, const Options& options);
   void watch(const WatchMessage& message);
   // All that it shows is another, such as the scene.

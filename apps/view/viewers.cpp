@@ -30,6 +30,15 @@ bool is_shared(const std::string& name) {
   return option != nullptr && option->scope != PanelOption::Scope::page;
 }
 
+// Of options those of what is loaded, in the order of the panel.
+Options of_scene(const Options& options) {
+  Options scene;
+  for (const PanelOption& option : panel_options())
+    if (option.scope == PanelOption::Scope::scene)
+      set_option(scene, option.name, option_of(options, option.name));
+  return scene;
+}
+
 // "eye,at,up,fov", from which scenes::parse_camera makes the same floats again.
 std::string camera_text(const scenes::Camera& camera, const glm::dvec3& origin) {
   const glm::dvec3 eye = glm::dvec3(camera.eye) + origin, at = glm::dvec3(camera.at) + origin;
@@ -44,7 +53,7 @@ Viewers::Viewers(Input input, Options options, Until until)
   for (const auto& [name, value] : options)
     set_option(is_shared(name) ? shared_ : first_, name, value);
   make_look(input_, options);
-  shared_in_force_ = shared_;
+  scene_loading_ = scene_in_force_ = of_scene(shared_);
 }
 
 Options Viewers::with_shared(const Options& own) const {
@@ -53,17 +62,23 @@ Options Viewers::with_shared(const Options& own) const {
   return all;
 }
 
-// By the rasterizer, as which all scenes are loaded.
-Options Viewers::shared_options() const {
-  const std::scoped_lock lock(mutex_);
+// For the rasterizer, as which all scenes are loaded.
+Options Viewers::options_to_load() const {
   Options options = with_shared(first_);
   set_option(options, "--engine", "");
   return options;
 }
 
 RenderRequest Viewers::shared_request() const {
-  Options options = shared_options();
-  return make_request(input_, options);
+  const std::scoped_lock lock(mutex_);
+  return request_of(options_to_load());
+}
+
+Options Viewers::begin_loading() {
+  const std::scoped_lock lock(mutex_);
+  scene_loading_ = of_scene(shared_);
+  wants_reload_ = wants_take_ = false;
+  return options_to_load();
 }
 
 void Viewers::opened(PageId page) {
@@ -127,8 +142,7 @@ void Viewers::receive(PageId, Page& page, const SizeMessage& message) {
 }
 
 void Viewers::receive(PageId, Page& page, const CameraMessage& message) {
-  page.viewer->move(message, seconds_now());
-  page.wants_place = false;
+  if (page.viewer->move(message, seconds_now())) page.wants_place = page.is_placed_by_some = false;
 }
 
 void Viewers::receive(PageId id, Page& page, const OptionMessage& message) {
@@ -239,16 +253,27 @@ void Viewers::renew_looks() {
   }
 }
 
-void Viewers::refuse_shared(const std::string& why) {
+bool Viewers::refuse_scene(const std::string& why) {
   const std::scoped_lock lock(mutex_);
-  shared_ = shared_in_force_;
+  const Options refused = std::exchange(scene_loading_, scene_in_force_);
+  if (!wants_reload_) {
+    for (const PanelOption& option : panel_options())
+      if (option.scope == PanelOption::Scope::scene)
+        set_option(shared_, option.name, option_of(scene_in_force_, option.name));
+  }
   renew_looks();
   for (const auto& [id, page] : pages_) send(id, {{"type", "error"}, {"text", why}});
+  return wants_reload_ || refused != scene_in_force_;
 }
 
 void Viewers::set_scene(const Json& facts, bool is_whole) {
   const std::scoped_lock lock(mutex_);
-  if (is_whole) shared_in_force_ = shared_;
+  is_whole_ = is_whole;
+  if (is_whole) {
+    scene_in_force_ = scene_loading_;
+    for (auto& [id, page] : pages_)
+      page.wants_place |= std::exchange(page.is_placed_by_some, false);
+  }
   scene_ = facts;
   progress_ = nullptr;
   for (const auto& [id, page] : pages_) send(id, scene_);
@@ -275,6 +300,7 @@ void Viewers::place(PageId page, const scenes::Camera& camera, float clip) {
   const auto found = pages_.find(page);
   if (found == pages_.end() || !found->second.viewer) return;
   found->second.viewer->place(camera, clip);
+  found->second.is_placed_by_some = !is_whole_;
   send(page, {{"type", "camera"},
               {"eye", numbers_of(camera.eye)},
               {"at", numbers_of(camera.at)},
@@ -311,7 +337,7 @@ std::optional<Task> Viewers::due(double now) {
     task.order.look = page.viewer->look();
     task.kind = places ? Task::Kind::place : Task::Kind::pick;
     if (places) {
-      task.view = std::exchange(page.view, {});
+      task.view = page.view;
     } else {
       task.pick = page.picks.front();
       page.picks.pop_front();
@@ -321,7 +347,8 @@ std::optional<Task> Viewers::due(double now) {
   const auto consider = [&](PageId id, const Page& page) {
     if (!page.viewer) return;
     const auto order = page.viewer->next(now);
-    if (!order) return;
+    if (!order || !(is_whole_ || order->stage == Stage::moving || order->stage == Stage::sharp))
+      return;
     const bool is_first = task.kind == Task::Kind::nothing;
     if (!is_first && !(order->stage == Stage::moving && task.order.stage != Stage::moving)) return;
     task.kind = Task::Kind::picture;

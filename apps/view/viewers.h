@@ -52,12 +52,18 @@ class Viewers {
   void closed(PageId page);
   bool is_there(PageId page) const;
 
-  // The options of the scene and of ranks that are asked for now.
-  Options shared_options() const;
+  // The scene and the ranks that are asked for now.
   RenderRequest shared_request() const;
-  // Takes back what was asked of scene and ranks, since it cannot be, and says why.
-  void refuse_shared(const std::string& why);
-  // There is a scene, or some of one: pages are told of it, and show it. `facts` go to pages as
+  RenderRequest request_of(Options options) const { return make_request(input_, options); }
+  // The scene that is asked for now is loaded from here on, with these options. Nothing is left of
+  // what was told of an earlier one.
+  Options begin_loading();
+  // The scene of begin_loading cannot be: says why, and takes back what was asked of it, unless
+  // something else was asked for since. Whether that leaves another scene to load.
+  bool refuse_scene(const std::string& why);
+  // There is a scene, or some of one: pages are told of it, and show it; some of one by sharp and
+  // moving pictures alone, since others would take time that the rest needs. Cameras that some of a
+  // scene has placed, and nobody has moved, are placed anew by all of it. `facts` go to pages as
   // they are.
   void set_scene(const Json& facts, bool is_whole);
   // A scene of which some is shown has been loaded.
@@ -84,7 +90,8 @@ class Viewers {
   struct Page {
     std::optional<Viewer> viewer;  // once it has said hello
     bool wants_place = false;
-    std::string view;
+    std::string view;                // by which it is placed
+    bool is_placed_by_some = false;  // of a scene that was not whole, and nobody has moved it since
     std::deque<PickMessage> picks;
   };
 
@@ -98,6 +105,7 @@ class Viewers {
   void receive(PageId id, Page& page, const WatchMessage& message);
   void receive(PageId id, Page& page, const CommandMessage& message);
   Options with_shared(const Options& own) const;
+  Options options_to_load() const;
   void share(const std::string& name, const std::string& value, const Viewer& viewer);
   void renew_looks();
   void send_panel(PageId id, const Viewer& viewer);
@@ -107,7 +115,8 @@ class Viewers {
 
   Input input_;
   Options first_;  // what a page begins with, but for what is shared
-  Options shared_, shared_in_force_;
+  Options shared_;
+  Options scene_loading_, scene_in_force_;  // of `shared_`, of a scene that is loaded, or is whole
   Until until_;
   bool ranks_are_fixed_ = false;
   Outlet* outlet_ = nullptr;
@@ -115,7 +124,8 @@ class Viewers {
   std::condition_variable changed_;
   std::map<PageId, Page> pages_;
   PageId last_served_ = 0;
-  bool had_pages_ = false, wants_reload_ = false, wants_restart_ = false, wants_take_ = false;
+  bool had_pages_ = false, is_whole_ = true, wants_reload_ = false, wants_restart_ = false,
+       wants_take_ = false;
   double last_closed_ = 0;
   Json scene_, progress_;
 };

@@ -45,6 +45,25 @@ glm::vec3 world(const Scene& scene, std::size_t instance, std::size_t triangle, 
   return i.transform * glm::vec4(mesh.positions[mesh.triangles[triangle][k]], 1);
 }
 
+TEST(Load, ShowsTheSceneOnceAsSoonAsItIsRead) {
+  const tests::TemporaryFolder folder;
+  folder.write("sample.mtl", "newmtl red\nKd 1 0 0\nnewmtl grey\nKd 0.5 0.5 0.5\n");
+  for (const SampleFile& file : sample_files()) {
+    SCOPED_TRACE(file.name);
+    std::vector<std::string> warnings;
+    std::vector<Scene> seen;
+    LoadOptions options;
+    options.on_read = [&](const Scene& scene) { seen.push_back(scene); };
+    const Scene scene = load(folder.write(file.name, file.content), warnings, options);
+    ASSERT_EQ(seen.size(), 1U);
+    expect_valid(seen[0]);
+    EXPECT_EQ(triangle_count(seen[0]), file.triangles);
+    EXPECT_EQ(bounds(seen[0]), bounds(scene));
+    EXPECT_EQ(seen[0].z_up, scene.z_up);
+    EXPECT_EQ(seen[0].origin, scene.origin);
+  }
+}
+
 TEST(Load, ReadsTheSameTrianglesFromEveryFormat) {
   const tests::TemporaryFolder folder;
   folder.write("sample.mtl", "newmtl red\nKd 1 0 0\nnewmtl grey\nKd 0.5 0.5 0.5\n");

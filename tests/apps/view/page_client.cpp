@@ -115,6 +115,12 @@ PageFrame PageClient::frame_of(const Message& message) {
   return frame;
 }
 
+nlohmann::json PageClient::text_of(const Message& message) const {
+  nlohmann::json json = nlohmann::json::parse(message.bytes);
+  if (see_) see_(json);
+  return json;
+}
+
 nlohmann::json PageClient::wait_for(const std::string& type) {
   for (;;) {
     const Message message = read();
@@ -122,7 +128,7 @@ nlohmann::json PageClient::wait_for(const std::string& type) {
       frame_of(message);
       continue;
     }
-    nlohmann::json json = nlohmann::json::parse(message.bytes);
+    nlohmann::json json = text_of(message);
     if (json["type"] == type) return json;
   }
 }
@@ -130,7 +136,10 @@ nlohmann::json PageClient::wait_for(const std::string& type) {
 PageFrame PageClient::wait_for_frame(const std::function<bool(const nlohmann::json&)>& is_it) {
   for (;;) {
     const Message message = read();
-    if (message.is_text) continue;
+    if (message.is_text) {
+      text_of(message);
+      continue;
+    }
     PageFrame frame = frame_of(message);
     if (is_it(frame.header)) return frame;
   }

@@ -45,6 +45,8 @@ class PageClient {
   // Reads until `is_it` takes a text message, which is returned; frames are acknowledged and kept
   // as the last. Throws std::runtime_error after 20 seconds, or when the connection ends.
   nlohmann::json wait_for(const std::string& type);
+  // Whoever waits shows all text messages to `see`.
+  void watch(std::function<void(const nlohmann::json& message)> see) { see_ = std::move(see); }
   // The first frame for which `is_it` holds.
   PageFrame wait_for_frame(const std::function<bool(const nlohmann::json& header)>& is_it);
   // Whether the server ends the connection before so many messages; its reason.
@@ -59,8 +61,10 @@ class PageClient {
   };
   Message read();
   PageFrame frame_of(const Message& message);
+  nlohmann::json text_of(const Message& message) const;
 
   std::unique_ptr<Socket> socket_;
+  std::function<void(const nlohmann::json& message)> see_;
   bool acknowledges_ = true;
 };
 
