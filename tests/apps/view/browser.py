@@ -354,6 +354,42 @@ def check_restart(page, server):
     return again
 
 
+def check_first_picture(browser, screenshots, folder):
+    """Some of a scene, whose light comes through a pipe, is there to be turned; all of it is seen from there."""
+    for command in (("generate", "scene", "terrain", "-n", "2100000", "-o", "terrain.glb"),
+                    ("render", "gen:spheres:100", "--size", "64x32", "-o", "light.png")):
+        subprocess.run([DELRAY, *command, "-q"], cwd=folder, check=True)
+    os.mkfifo(folder / "pipe.png")
+    server = Server(str(folder / "terrain.glb"), "--light", str(folder / "pipe.png"), "--threads", "2")
+    try:
+        see_first_picture(browser, screenshots, folder, server)
+        server.end()
+    finally:
+        server.process.kill()
+
+
+def see_first_picture(browser, screenshots, folder, server):
+    browser.get(server.url)
+    page = Page(browser, screenshots)
+    until("a first picture", page.frame)
+    until("progress beside it", lambda: page.find("#loading").text)
+    assert not page.find("#waiting").is_displayed() and page.colours() > 50
+    some = page.state()["scene"]["triangles"]
+    assert 10000 < some <= 200000, some
+    page.shot("first_picture")
+    place, frame = eye(page), page.frame()
+    page.drag(150, 40)
+    until("a turned picture", lambda: page.frame() > frame and page.state()["header"]["stage"] == "sharp")
+    turned = eye(page)
+    assert turned != place and page.find("#loading").text
+    page.shot("first_picture_turned")
+    (folder / "pipe.png").write_bytes((folder / "light.png").read_bytes())
+    page.rested()
+    assert page.state()["scene"]["triangles"] > 2000000 and eye(page) == turned
+    until("no more progress", lambda: not page.find("#loading").text)
+    page.shot("whole_picture")
+
+
 def check_once(browser):
     server = Server("gen:spheres:200", "--once")
     browser.get(server.url)
@@ -383,6 +419,8 @@ def main():
             errors = [entry for entry in errors_of(browser) if "WebSocket connection" not in entry["message"]]
             assert not errors, errors
             server.end()
+            check_first_picture(browser, screenshots, folder)
+            print("passed: check_first_picture", flush=True)
             check_once(browser)
             print("passed: check_once", flush=True)
         finally:
