@@ -23,7 +23,7 @@ namespace delray::delaunay::internal {
 //
 // REQUIRES: locate > 0, insert > 0, 1 <= present <= most.
 inline int searching_threads(double locate, double insert, int present, int most) {
-  constexpr double kHardly = 0.1;  // of a thread
+  constexpr double kHardly = 0.25;  // of a thread
   const double ratio = std::min(locate / insert, static_cast<double>(most));
   if (std::abs(ratio - present) <= 0.5 + kHardly) return present;
   return std::max(static_cast<int>(std::lround(ratio)), 1);

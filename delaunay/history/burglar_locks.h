@@ -40,8 +40,9 @@ struct Burglaries {
 // simplex, whose owner waits, and so on to the burglar; of such a chain only the last thread runs,
 // and if that comes to wait another may become the last. Threads wait between operations only, so
 // what is broken into is a triangulation; but whoever has waited may find it changed, be it robbed
-// or a burglar itself, and is told so. kCounted: whether to count.
-template <int D, bool kCounted>
+// or a burglar itself, and is told so. kCounted: whether to count;
+// kPlain: see HeldLeaves.
+template <int D, bool kCounted, bool kPlain>
 class BurglarLocks : public FlipCounter {
  public:
   static constexpr bool kMayRetry = true;
@@ -89,7 +90,7 @@ class BurglarLocks : public FlipCounter {
 
   // See tell_kept(). Neighbours of what the insertion replaced stay what they are.
   void keep(NodeNumber node) {
-    if (early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
+    if (!kPlain && early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
   }
 
   void commit() {
@@ -123,7 +124,7 @@ class BurglarLocks : public FlipCounter {
   parallel::Team& team_;
   ThreadWaits& waits_;
   bool early_;
-  HeldLeaves<D> held_;
+  HeldLeaves<D, kPlain> held_;
   std::vector<bool> robbed_;  // thread i, by this one, since its last commit
   bool robs_ = false, has_robbed_ = false;
   Synchronization counts_;

@@ -40,7 +40,7 @@ Triangulation rebuild(PointView<double> points, const Options& options) {
   return insert_all(points, alone).triangulation;
 }
 
-template <int D, bool kCounted>
+template <int D, bool kCounted, bool kPlain>
 Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
@@ -48,7 +48,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   PointSupply supply = insert_alone(run, triangulation);
   Burglaries shared(run.parts(), options);
   struct Burglar {
-    BurglarLocks<D, kCounted> access;
+    BurglarLocks<D, kCounted, kPlain> access;
     LeafSearch<D> search;
   };
   bool robbed = false;
@@ -90,7 +90,8 @@ Result insert_all_points(PointView<double> points, const Options& options) {
 
 Result insert_by_burglary(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
-    return insert_all_points<D, kCounted>(points, options);
+    return is_plain(options) ? insert_all_points<D, kCounted, true>(points, options)
+                             : insert_all_points<D, kCounted, false>(points, options);
   });
 }
 

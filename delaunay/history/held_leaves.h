@@ -16,18 +16,22 @@
 
 namespace delray::delaunay::internal {
 
+// Whether HeldLeaves may be plain.
+inline bool is_plain(const Options& options) {
+  return options.locks == "atomic" && options.unlock == "end";
+}
+
 // Leaves stay locked until commit() or undo(), also if they are replaced meanwhile, by whomsoever,
 // unless they are given back by unlock(): a thread that waits for a leaf waits until its owner is
 // done with everything. What the thread
 // creates meanwhile is locked too, since others may walk by.
-template <int D>
+//
+// kPlain: by atomic instructions, and unlock() is not called.
+template <int D, bool kPlain>
 class HeldLeaves {
  public:
   HeldLeaves(Dag<D>& dag, LockMutexes& mutexes, std::uint32_t thread)
-      : dag_(dag),
-        mutexes_(mutexes.empty() ? nullptr : &mutexes),
-        owner_(thread + 1),
-        cache_(dag, thread) {}
+      : dag_(dag), mutexes_(mutexes), owner_(thread + 1), cache_(dag, thread) {}
 
   std::uint32_t owner() const { return owner_; }
   // How many it holds, new ones among them.
@@ -115,10 +119,10 @@ class HeldLeaves {
   };
 
   std::uint32_t test_and_set(NodeNumber node, RecordNumber record) {
-    if (mutexes_ == nullptr) return dag_.try_lock(node, record, owner_);
+    if (kPlain || mutexes_.empty()) return dag_.try_lock(node, record, owner_);
     // As with the instruction, looking comes before trying.
     const std::uint32_t before = dag_.owner(node, record);
-    return before == 0 ? mutexes_->try_lock(dag_, node, record, owner_, mutex_counts_) : before;
+    return before == 0 ? mutexes_.try_lock(dag_, node, record, owner_, mutex_counts_) : before;
   }
   // The records of what is no leaf any more will serve others.
   void release(const HeldLeaf& leaf) {
@@ -131,8 +135,11 @@ class HeldLeaves {
   }
   void release() {
     for (const HeldLeaf& held : held_) {
-      // What was given back may be another thread's by now, or this one's for the second time.
-      if (unlocked_ == 0 || dag_.owner(held.node, held.record) == owner_) release(held);
+      if constexpr (!kPlain) {
+        // What was given back may be another thread's by now, or this one's for the second time.
+        if (unlocked_ > 0 && dag_.owner(held.node, held.record) != owner_) continue;
+      }
+      release(held);
     }
     for (const HeldLeaf& created : created_) release(created);
     held_.clear();
@@ -143,7 +150,7 @@ class HeldLeaves {
   }
 
   Dag<D>& dag_;
-  LockMutexes* mutexes_;  // null: an atomic instruction
+  LockMutexes& mutexes_;  // none: by atomic instructions
   LockMutexes::Counts mutex_counts_;
   std::uint32_t owner_;
   NodeCache<D> cache_;

@@ -44,8 +44,9 @@ struct Blocking {
 // undone. With options.unlock early, those that the insertion keeps are given back before that: a
 // boundary simplex that another thread changes meanwhile gets links on other facets only, since for
 // all else that thread needs the new simplex beyond, which stays locked. After a rollback the
-// thread finds it replaced, and rolls back in turn. kCounted: whether to count.
-template <int D, bool kCounted>
+// thread finds it replaced, and rolls back in turn. kCounted: whether to count;
+// kPlain: see HeldLeaves.
+template <int D, bool kCounted, bool kPlain>
 class NodeLocks : public FlipCounter {
  public:
   static constexpr bool kMayRetry = false;
@@ -106,7 +107,7 @@ class NodeLocks : public FlipCounter {
 
   // See tell_kept(). Neighbours of what the insertion replaced stay what they are.
   void keep(NodeNumber node) {
-    if (early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
+    if (!kPlain && early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
   }
 
   void commit() {
@@ -172,7 +173,7 @@ class NodeLocks : public FlipCounter {
   Blocking& blocking_;
   std::uint32_t thread_;
   bool priorities_, early_;
-  HeldLeaves<D> held_;
+  HeldLeaves<D, kPlain> held_;
   HeldLeaf refused_;  // what refuser_ (1 + its number) would not give
   std::uint32_t refuser_ = 0;
   std::vector<Link> journal_;

@@ -42,7 +42,7 @@ bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber
   return true;
 }
 
-template <int D, bool kCounted>
+template <int D, bool kCounted, bool kPlain>
 Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
@@ -50,7 +50,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   PointSupply supply = run.supply();
   Blocking blocking(run.parts(), options);
   struct Locker {
-    NodeLocks<D, kCounted> access;
+    NodeLocks<D, kCounted, kPlain> access;
     LeafSearch<D> search;
   };
   insert_with_team(
@@ -83,7 +83,8 @@ Result insert_all_points(PointView<double> points, const Options& options) {
 
 Result insert_optimistically(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
-    return insert_all_points<D, kCounted>(points, options);
+    return is_plain(options) ? insert_all_points<D, kCounted, true>(points, options)
+                             : insert_all_points<D, kCounted, false>(points, options);
   });
 }
 

@@ -35,7 +35,7 @@ Rows rows_by(const TriangulateComparison& comparison, std::string delaunay::Opti
   });
 }
 
-std::string per_point(std::uint64_t count, const Row& row) {
+std::string for_each_point(std::uint64_t count, const Row& row) {
   return fmt::format("{:.4g}", static_cast<double>(count) / static_cast<double>(row.points));
 }
 
@@ -71,7 +71,7 @@ Html lock_kinds(const TriangulateComparison& comparison) {
     const delaunay::Synchronization& s = row.statistics.synchronization;
     numbers.rows.push_back({std::to_string(row.points), row.how.method, row.how.locks,
                             fmt::format("{:.2f}", row.seconds.median * 1e3),
-                            per_point(s.mutex_locks, row), std::to_string(s.mutex_waits),
+                            for_each_point(s.mutex_locks, row), std::to_string(s.mutex_waits),
                             std::to_string(s.mutex_bytes)});
   }
   return heading("Atomic instructions against mutexes") +
@@ -100,8 +100,9 @@ Html unlock_times(const TriangulateComparison& comparison) {
     const double insertions = std::max(static_cast<double>(s.lock_lists.lists), 1.0);
     numbers.rows.push_back(
         {std::to_string(row.points), row.how.method, row.how.unlock,
-         fmt::format("{:.2f}", row.seconds.median * 1e3), per_point(s.unlocked_early, row),
-         per_point(s.lock_calls, row), per_point(s.free, row), per_point(s.waits, row),
+         fmt::format("{:.2f}", row.seconds.median * 1e3), for_each_point(s.unlocked_early, row),
+         for_each_point(s.lock_calls, row), for_each_point(s.free, row),
+         for_each_point(s.waits, row),
          fmt::format("{:.4g}", static_cast<double>(s.lock_lists.entries) / insertions),
          std::to_string(s.deadlocks), std::to_string(s.rollbacks), std::to_string(s.burglaries)});
   }

@@ -36,10 +36,11 @@ TEST(SearchingThreads, AreAtLeastOneAndAtMostAsManyAsThereAre) {
 }
 
 TEST(SearchingThreads, StayWhereTheRatioHardlyLeavesThem) {
-  EXPECT_EQ(searching_threads(2.55, 1.0, 2, 7), 2);
-  EXPECT_EQ(searching_threads(2.55, 1.0, 3, 7), 3);
-  EXPECT_EQ(searching_threads(2.65, 1.0, 2, 7), 3);
-  EXPECT_EQ(searching_threads(2.35, 1.0, 3, 7), 2);
+  EXPECT_EQ(searching_threads(2.7, 1.0, 2, 7), 2);
+  EXPECT_EQ(searching_threads(2.7, 1.0, 3, 7), 3);
+  EXPECT_EQ(searching_threads(2.8, 1.0, 2, 7), 3);
+  EXPECT_EQ(searching_threads(2.2, 1.0, 3, 7), 2);
+  EXPECT_EQ(searching_threads(2.3, 1.0, 3, 7), 3);
 }
 
 TEST(ActiveSearchers, FollowTheTimesOfTheLastPoints) {
