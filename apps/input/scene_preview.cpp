@@ -28,7 +28,8 @@ void offer_coarse(const ScenePreview& preview, const scenes::Scene& scene,
                   const std::function<void(scenes::Scene& coarse)>& look) {
   constexpr std::size_t kMostTriangles = 200'000;
   std::size_t triangles = 0;
-  for (const scenes::Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
+  for (const scenes::Mesh& mesh : scene.meshes)
+    if (mesh.has_triangles() && mesh.normals.empty()) triangles += mesh.triangles.size();
   if (!preview || triangles < kTrianglesWorthAPreview) return;
   offer(preview, [&] {
     std::optional<scenes::Scene> coarse = scenes::cluster_vertices(scene, kMostTriangles);
