@@ -9,8 +9,8 @@
 namespace delray::delaunay {
 
 // All legal methods, locations, splits, orders and deadlock strategies in a dimension, in the order
-// of the tables, and with the default split all kinds of locks and times of unlocking; the rest of
-// the options is as by default. "none" where a method leaves no choice.
+// of the tables, and with the first split and order all kinds of locks and times of unlocking; the
+// rest of the options is as by default. "none" where a method leaves no choice.
 std::vector<Options> combinations(int dim);
 
 // The combinations with the method's default split, deadlock strategy, kind of locks and time of

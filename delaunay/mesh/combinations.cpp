@@ -28,9 +28,11 @@ std::vector<Options> combinations(int dim) {
       options.location = location;
       for (const auto split : or_none(method.splits)) {
         options.split = split;
-        const bool is_default = split == default_of(method.splits).front();
-        for (const auto order : or_none(orders_for(method, location))) {
+        const Names orders = or_none(orders_for(method, location));
+        for (const auto order : orders) {
           options.order = order;
+          const bool is_default =
+              split == default_of(method.splits).front() && order == orders.front();
           for (const auto strategy : or_none(method.deadlocks)) {
             options.deadlocks = strategy;
             for (const auto kind : is_default ? or_none(method.locks) : default_of(method.locks)) {
