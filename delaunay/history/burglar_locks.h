@@ -32,8 +32,8 @@ struct Burglaries {
   ThreadWaits waits;
 };
 
-// Simplices stay locked until commit() (with options.unlock early, those that the insertion keeps:
-// as in NodeLocks), but nothing is ever undone.
+// Simplices stay locked until commit(), with options.unlock early but for those that the insertion
+// keeps (see keep()), and nothing is ever undone.
 //
 // A thread whose waiting would close a circle breaks into the simplices of the thread that it would
 // wait for, until its own commit(). Nobody else uses them meanwhile: their owner waits for a
@@ -88,16 +88,18 @@ class BurglarLocks : public FlipCounter {
     held_.retire(node, children);
   }
 
-  // See tell_kept(). Neighbours of what the insertion replaced stay what they are.
+  // See tell_kept(). Neighbours of what the insertion replaced stay what they are. Not once the
+  // insertion has had to wait: others see it unfinished since then, and whom this thread has robbed
+  // sleeps only for as long as it holds what that thread waits for.
   void keep(NodeNumber node) {
-    if (!kPlain && early_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
+    if (!kPlain && early_ && !is_shown_ && held_.unlock(node) && kCounted) ++counts_.unlocked_early;
   }
 
   void commit() {
     if (kCounted) add_list(counts_.lock_lists, held_.size());
     held_.commit();
     if (robs_) robbed_.assign(robbed_.size(), false);
-    robs_ = false;
+    robs_ = is_shown_ = false;
   }
 
   // Whether this thread ever was a burglar.
@@ -112,6 +114,7 @@ class BurglarLocks : public FlipCounter {
   // Returns whether it has waited, or the leaf was replaced.
   bool wait_or_rob(NodeNumber node, RecordNumber record) {
     held_.show();
+    is_shown_ = true;
     const std::uint32_t owner = held_.wait(node, record, waits_, team_);
     if (owner == 0 || owner == kReplaced) return true;
     robbed_[owner - 1] = robs_ = has_robbed_ = true;
@@ -127,6 +130,7 @@ class BurglarLocks : public FlipCounter {
   HeldLeaves<D, kPlain> held_;
   std::vector<bool> robbed_;  // thread i, by this one, since its last commit
   bool robs_ = false, has_robbed_ = false;
+  bool is_shown_ = false;  // whether others may see what the insertion has made so far
   Synchronization counts_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "delaunay/combinations.h"
 #include "delaunay/generate.h"
+#include "delaunay/history/burglar_locks.h"
 #include "delaunay/methods.h"
 #include "tests/delaunay/same_simplices.h"
 
@@ -29,6 +30,46 @@ TEST(EarlyUnlock, MakesTheSameSimplicesWithMoreThreadsThanCores) {
       }
     }
   }
+}
+
+// What a burglar has locked keeps the thread asleep whose simplices it uses.
+TEST(EarlyUnlock, WaitsForTheEndAfterABurglary) {
+  using internal::BurglarLocks, internal::Grant;
+  Dag<2> dag;
+  Options options;
+  options.locks = "atomic";
+  options.unlock = "early";
+  internal::Burglaries shared(2, options);
+  parallel::Team team;
+  BurglarLocks<2, true, false> burglar(dag, team, shared, 0), robbed(dag, team, shared, 1);
+  burglar.reserve(2);
+  const NodeNumber wanted = burglar.create({0, 1, 2}), other = burglar.create({2, 1, 3});
+  burglar.commit();
+  const auto owner = [&](NodeNumber node) { return dag.owner(node, dag.record_of(node)); };
+
+  ASSERT_EQ(burglar.acquire({wanted}), Grant::kGranted);
+  burglar.keep(wanted);
+  EXPECT_EQ(owner(wanted), 0U);
+  ASSERT_EQ(burglar.acquire({wanted}), Grant::kGranted);
+  ASSERT_EQ(robbed.acquire({other}), Grant::kGranted);
+  std::uint32_t holder = 0;
+  ASSERT_TRUE(shared.waits.enter(dag, 1, {wanted, dag.record_of(wanted)}, holder));
+  burglar.reserve(1);
+  const NodeNumber made = burglar.create({3, 1, 4});
+  ASSERT_EQ(burglar.acquire({other}), Grant::kGranted);
+  ASSERT_TRUE(burglar.has_robbed());
+  burglar.keep(wanted);
+  burglar.keep(made);  // the other thread sees it by now
+  EXPECT_EQ(owner(wanted), 1U);
+  EXPECT_EQ(owner(made), 1U);
+  burglar.commit();
+  EXPECT_EQ(owner(wanted), 0U);
+  EXPECT_EQ(owner(made), 0U);
+  EXPECT_EQ(owner(other), 2U);
+  ASSERT_EQ(burglar.acquire({wanted}), Grant::kGranted);
+  burglar.keep(wanted);
+  EXPECT_EQ(owner(wanted), 0U);
+  EXPECT_EQ(burglar.counts().unlocked_early, 2U);
 }
 
 TEST(EarlyUnlock, IsCounted) {
