@@ -225,9 +225,11 @@ TEST(Pack, FramesInTimeHaveTheErrorThatFits) {
   };
   const Json hasty = errors_of("0.1"), patient = errors_of("100000", " --ranks 2");
   ASSERT_EQ(hasty.size(), 8U);
-  EXPECT_GT(hasty[7]["error"], hasty[0]["error"]);
   EXPECT_LT(patient[7]["error"], 0.1);
-  EXPECT_GT(patient[7]["triangles"], hasty[7]["triangles"]);
+  EXPECT_GT(patient[7]["triangles"], patient[0]["triangles"]);
+  // No frames fall faster than those with time to spare; by how much is the machine's affair.
+  for (std::size_t i = 0; i < hasty.size(); ++i)
+    EXPECT_GE(hasty[i]["error"], patient[i]["error"]) << i;
   for (const std::string wrong : {"s.pack -o a.png --frame-time 10",
                                   "s.pack -o a.png --turntable 3 --frame-time 10 --error 1",
                                   "gen:cornell -o a.png --turntable 3 --frame-time 10"})
