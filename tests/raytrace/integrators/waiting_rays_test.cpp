@@ -14,31 +14,8 @@
 namespace delray::raytrace {
 namespace {
 
-// A mirror, glass, a veil before them, something that glows, all on a floor and under a sky.
-scenes::Scene various() {
-  scenes::Scene scene;
-  add(scene, quad({-6, -1, 6}, {12, 0, 0}, {0, 0, -12}));
-  scenes::Material& mirror = add(scene, sphere(12), placed(1, {-1.2F, 0, 0}));
-  mirror.metallic = 1;
-  mirror.roughness = 0.1F;
-  scenes::Material& glass = add(scene, sphere(12), placed(0.8F, {1, -0.1F, 0.5F}));
-  glass.transmission = 1;
-  glass.roughness = 0;
-  scenes::Material& veil = add(scene, quad({-2, -1, 2}, {3, 0, 0}, {0, 1.3F, 0}));
-  veil.alpha = scenes::Material::Alpha::blend;
-  veil.base_colour.w = 0.4F;
-  scenes::Material& lamp = add(scene, quad({-1, 3, -1}, {0, 0, 1}, {1, 0, 0}));
-  lamp.emission = glm::vec3(5);
-  scenes::Light light;
-  light.direction = {0.3F, -1, -0.4F};
-  scene.lights.push_back(light);
-  scene.environment.zenith = {0.2F, 0.3F, 0.6F};
-  scene.environment.horizon = {0.4F, 0.4F, 0.4F};
-  return scene;
-}
-
 struct Setting {
-  scenes::Scene scene = various();
+  scenes::Scene scene = mixture();
   Tracer tracer = make_tracer(scene);
   shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
 

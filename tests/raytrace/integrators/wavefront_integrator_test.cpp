@@ -15,34 +15,6 @@
 namespace delray::raytrace {
 namespace {
 
-// Mirrors, glass, veils and cut-outs over a floor, under a sky and three kinds of light.
-scenes::Scene mixture() {
-  scenes::Scene scene;
-  add(scene, quad({-6, -1, 6}, {12, 0, 0}, {0, 0, -12}));
-  scenes::Material& mirror = add(scene, sphere(12), placed(1, {-1.2F, 0, 0}));
-  mirror.metallic = 1;
-  mirror.roughness = 0.1F;
-  scenes::Material& glass = add(scene, sphere(12), placed(0.8F, {1, -0.1F, 0.5F}));
-  glass.transmission = 1;
-  glass.roughness = 0;
-  scene.instances.push_back({2, placed(0.3F, {0, 1.2F, 0})});
-  scenes::Material& veil = add(scene, quad({-2, -1, 2}, {3, 0, 0}, {0, 1.3F, 0}));
-  veil.alpha = scenes::Material::Alpha::blend;
-  veil.base_colour.w = 0.4F;
-  scenes::Material& lamp = add(scene, quad({-1, 3, -1}, {0, 0, 1}, {1, 0, 0}));
-  lamp.emission = glm::vec3(5);
-  scenes::Light light;
-  light.direction = {0.3F, -1, -0.4F};
-  scene.lights.push_back(light);
-  light.kind = scenes::Light::Kind::point;
-  light.position = {2, 2, 3};
-  light.colour = glm::vec3(8);
-  scene.lights.push_back(light);
-  scene.environment.zenith = {0.2F, 0.3F, 0.6F};
-  scene.environment.horizon = {0.4F, 0.4F, 0.4F};
-  return scene;
-}
-
 scenes::Camera camera() {
   scenes::Camera c;
   c.eye = {0.5F, 1, 6};
