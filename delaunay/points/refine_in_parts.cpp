@@ -32,7 +32,7 @@ constexpr std::size_t kEnoughTriangles = 512;
 constexpr std::size_t kEnoughCandidates = 512;
 constexpr double kCandidatesPerPart = 128;  // a part has many more triangles inside than at its rim
 constexpr std::size_t kMostColumns = 64;
-constexpr std::size_t kSlotsPerCandidate = 8;  // an insertion takes two
+constexpr std::size_t kSlotsPerCandidate = 5;  // an insertion takes two
 constexpr int kMostLevels = 16;
 constexpr int kMostCuts = 8;  // of a level
 constexpr std::size_t kSamples = 16384;
@@ -140,7 +140,7 @@ class Simplification::Parts {
         std::sqrt(static_cast<double>(entries.size()) / kCandidatesPerPart));
     const Grid grid(sample, std::clamp(columns, std::size_t{1}, kMostColumns), shift);
     parts_.assign(grid.size(), {});
-    make_room(kSlotsPerCandidate * entries.size());
+    const std::size_t slots = make_room(kSlotsPerCandidate * entries.size());
     part_of_.resize(terrain_.mesh_.size());
     constexpr std::size_t kGrain = 4096;
     parallel::parallel_for(0, terrain_.access_.used(), kGrain, [&](std::size_t t) {
@@ -151,23 +151,28 @@ class Simplification::Parts {
     for (const Entry& entry : entries) parts_[part_of_[entry.triangle]].entries.push_back(entry);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       Part& part = parts_[i];
-      const std::size_t wanted = kSlotsPerCandidate * part.entries.size();
+      const std::size_t wanted = slots / entries.size() * part.entries.size();
       part.slots.assign(free_.end() - static_cast<std::ptrdiff_t>(wanted), free_.end());
       free_.resize(free_.size() - wanted);
       for (const SimplexNumber t : part.slots) part_of_[t] = static_cast<PartNumber>(i);
     }
   }
 
-  void make_room(std::size_t slots) {
-    if (free_.size() >= slots) return;
-    const SimplexNumber first = terrain_.access_.used();
-    const std::size_t end = first + slots - free_.size();
-    terrain_.reserve(end);
-    for (std::size_t t = end; t-- > first;) {
-      free_.push_back(static_cast<SimplexNumber>(t));
-      terrain_.mesh_.set_vertex(corner_of(free_.back(), 0), kDeadVertex);
-    }
+  // Sees to so many free slots, or as many as leave enough for all places. Returns how many.
+  std::size_t make_room(std::size_t wanted) {
+    wanted = std::min(wanted, terrain_.mesh_.size() - 2 * terrain_.places_.points.size());
+    if (free_.size() >= wanted) return wanted;
+    const SimplexNumber used = terrain_.access_.used();
+    const std::size_t end = used + wanted - free_.size();
+    constexpr std::size_t kGrain = 8192;
+    parallel::parallel_for(used, end, kGrain, [&](std::size_t t) {
+      const auto slot = static_cast<SimplexNumber>(t);
+      terrain_.mesh_.set_vertex(corner_of(slot, 0), kDeadVertex);
+      terrain_.start_lists(slot);
+    });
+    for (std::size_t t = end; t-- > used;) free_.push_back(static_cast<SimplexNumber>(t));
     terrain_.access_ = SoleAccess(static_cast<SimplexNumber>(end));
+    return wanted;
   }
 
   std::size_t refine_part(PartNumber number, double least) {

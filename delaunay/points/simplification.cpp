@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <queue>
 
 #include "delaunay/flip/flip_2d.h"
@@ -34,16 +35,10 @@ double sum_from_below(double z, double bound) {
 
 }  // namespace
 
-void Simplification::reserve(std::size_t triangles) {
-  if (triangles <= mesh_.size()) return;
-  mesh_.grow(std::max<std::size_t>(triangles, 2 * mesh_.size()));
-  first_.resize(mesh_.size(), kNoPlace);
-  candidates_.resize(mesh_.size());
-}
-
 void Simplification::insert(std::uint32_t place, SimplexNumber triangle) {
-  reserve(std::size_t{access_.used()} + 2);
+  const SimplexNumber used = access_.used();
   subdivide(mesh_, triangle, place, access_, suspects_);
+  for (SimplexNumber made = used; made < access_.used(); ++made) start_lists(made);
   legalize(mesh_, places_.points, access_, suspects_);
   is_kept_[place] = 1;
 }
@@ -116,8 +111,8 @@ void Simplification::share_out_blocks(std::size_t n, AddPlaces&& add_places) {
 void Simplification::start(const std::vector<std::uint32_t>& corners) {
   const auto turn =
       orient2d(places_.points[corners[0]], places_.points[corners[1]], places_.points[corners[2]]);
-  reserve(2 * corners.size());
   start_mesh(mesh_, {corners[0], corners[turn > 0 ? 1 : 2], corners[turn > 0 ? 2 : 1]});
+  for (SimplexNumber made = 0; made < access_.used(); ++made) start_lists(made);
   for (int k = 0; k < 3; ++k) is_kept_[corners[k]] = 1;
   std::uint32_t random = 1;
   SimplexNumber near = 0;
@@ -222,24 +217,44 @@ void Simplification::refine(double least, std::size_t triangles) {
   }
 }
 
+// Those of the vertices of all triangles but the ghosts, three by three.
+std::vector<std::uint32_t> Simplification::rows_of_triangles() const {
+  constexpr std::size_t kGrain = 8192;
+  const std::size_t blocks = (access_.used() + kGrain - 1) / kGrain;
+  const auto for_each_of = [&](std::size_t block, auto&& f) {
+    const std::size_t end = std::min<std::size_t>(access_.used(), (block + 1) * kGrain);
+    for (auto t = static_cast<SimplexNumber>(block * kGrain); t < end; ++t) {
+      if (!mesh_.is_dead(t) && !mesh_.is_ghost(t)) f(t);
+    }
+  };
+  std::vector<std::size_t> first(blocks + 1, 0);
+  parallel::parallel_for(0, blocks, 1, [&](std::size_t block) {
+    for_each_of(block, [&](SimplexNumber) { first[block + 1] += 3; });
+  });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> rows(first.back());
+  parallel::parallel_for(0, blocks, 1, [&](std::size_t block) {
+    std::size_t i = first[block];
+    for_each_of(block, [&](SimplexNumber t) {
+      for (unsigned k = 0; k < 3; ++k) rows[i++] = places_.rows[mesh_.vertex(corner_of(t, k))];
+    });
+  });
+  return rows;
+}
+
 SimplifiedTerrain Simplification::result() const {
   SimplifiedTerrain result;
   Triangulation& triangulation = result.triangulation;
   triangulation.distinct = places_.points.size();
-  for (std::uint32_t place = 0; place < places_.points.size(); ++place) {
-    if (is_kept_[place] != 0) result.kept.push_back(places_.rows[place]);
+  std::vector<std::uint8_t> is_kept_row(std::ranges::max(places_.rows) + std::size_t{1}, 0);
+  for (std::uint32_t place = 0; place < places_.points.size(); ++place)
+    is_kept_row[places_.rows[place]] = is_kept_[place];
+  for (std::size_t row = 0; row < is_kept_row.size(); ++row) {
+    if (is_kept_row[row] != 0) result.kept.push_back(static_cast<std::uint32_t>(row));
   }
-  std::ranges::sort(result.kept);
-  for (SimplexNumber triangle = 0; triangle < access_.used(); ++triangle) {
-    if (mesh_.is_dead(triangle)) continue;
-    if (mesh_.is_ghost(triangle)) {
-      ++triangulation.hull_facets;
-      continue;
-    }
-    for (unsigned k = 0; k < 3; ++k) {
-      triangulation.vertices.push_back(places_.rows[mesh_.vertex(corner_of(triangle, k))]);
-    }
-  }
+  triangulation.vertices = rows_of_triangles();
+  // A sphere of triangles and ghosts, two fewer than twice its vertices with the infinite one.
+  triangulation.hull_facets = 2 * result.kept.size() - 2 - triangulation.vertices.size() / 3;
   // They are all within the bound, whatever rounding says.
   const auto error_of = [&](std::size_t first, std::size_t last) {
     double largest = 0;

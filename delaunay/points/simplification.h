@@ -1,12 +1,15 @@
 // A terrain's triangulation that grows until all places are within a bound of it.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <utility>
 #include <vector>
 
 #include "delaunay/mesh/access.h"
+#include "delaunay/mesh/array.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/simplify_terrain.h"
 
@@ -32,7 +35,10 @@ class Simplification {
         max_error_(max_error),
         progress_(progress),
         is_kept_(places_.points.size(), 0),
-        next_(places_.points.size(), kNoPlace) {}
+        mesh_(std::min<std::size_t>(4 * places_.points.size(), kMaximumSimplices)),
+        next_(places_.points.size(), kNoPlace),
+        first_(mesh_.size()),
+        candidates_(mesh_.size()) {}
 
   // REQUIRES: corners of the hull, at least three, in an order that is good for insertion.
   void start(const std::vector<std::uint32_t>& corners);
@@ -73,7 +79,11 @@ class Simplification {
   // not yet there.
   void refine(double least, std::size_t triangles);
   void insert(std::uint32_t place, SimplexNumber triangle);
-  void reserve(std::size_t triangles);
+  // Of a triangle that nothing is known of.
+  void start_lists(SimplexNumber triangle) {
+    first_[triangle] = kNoPlace;
+    candidates_[triangle] = {};
+  }
   void take_places(SimplexNumber triangle, std::uint32_t but, std::vector<std::uint32_t>& taken);
   void add(std::vector<Run>& runs, SimplexNumber triangle, std::uint32_t place);
   void keep(const std::vector<Run>& runs);
@@ -88,6 +98,7 @@ class Simplification {
                  std::vector<CornerNumber>& star) const;
   // The candidates with an error above `least`.
   std::vector<Entry> candidates_above(double least) const;
+  std::vector<std::uint32_t> rows_of_triangles() const;
   glm::dvec3 at(std::uint32_t place) const {
     return {places_.points[place], places_.heights[place]};
   }
@@ -98,12 +109,15 @@ class Simplification {
   double max_error_;
   parallel::Progress* progress_;
   std::vector<std::uint8_t> is_kept_;
+  // All places have two triangles each at most, ghosts among them; the other slots may be free ones
+  // of parts. What is not used of so much memory is not touched either.
   Mesh<2> mesh_;
   SoleAccess access_{4};
   std::vector<CornerNumber> suspects_;
   // The places in a triangle, its boundary included, that are not kept: a list for each triangle.
-  std::vector<std::uint32_t> first_, next_;
-  std::vector<Candidate> candidates_;  // per triangle
+  std::vector<std::uint32_t> next_;
+  Array<std::uint32_t> first_;
+  Array<Candidate> candidates_;  // per triangle
   std::vector<CornerNumber> star_;
   std::vector<std::uint32_t> orphans_;
   std::vector<Run> runs_;
