@@ -1,10 +1,11 @@
 """Draws scenes by Debian's ParaView under mpirun, with IceT's own libraries and with Delray's in their place, and
 compares what every frame gave on every rank. Usage:
 
-    with_paraview.py LIBDELRAY_ICET RECORD_FRAMES WORK_DIR [--ranks N,N...] [--kinds K,K...] [--size WxH] [--frames N] [--times]
+    with_paraview.py LIBDELRAY_ICET RECORD_FRAMES WORK_DIR [--ranks N,N...] [--kinds K,K...] [--size WxH] [--frames N] [--times] [--turns N]
 
 Kinds: opaque and transparent (pvbatch), tiles and transparent-tiles (pvserver, 2 x 2, four ranks). Ends with 77 where ParaView is not
-there, and with 1 where a channel of a pixel differs by more than rounding can make it. --times prints the medians of time in compositing.
+there, and with 1 where a channel of a pixel differs by more than rounding can make it. --times prints the medians of time in compositing;
+both sides take so many --turns.
 """
 import argparse
 import os
@@ -93,17 +94,19 @@ def compare(kind, ranks, icet, delray):
         sys.exit(f'channels may differ by {most} at most')
 
 
-def print_times(kind, ranks, icet, delray):
-    """Medians over frames but the first: from the last rank's drawing to the last rank's end, all of the frame, and
-    ICET_COMPOSITE_TIME, which has the time that ranks wait for others to draw in it, too, of the slowest rank."""
+def print_times(turns):
+    """Medians over turns of medians over frames but the first: from the last rank's drawing to the last rank's end, all of the frame,
+    and ICET_COMPOSITE_TIME, which has the time that ranks wait for others to draw in it, too, of the slowest rank."""
     def median(times, seconds):
         frames = sorted({frame for _, frame in times})[1:]
         return statistics.median(seconds([times[key] for key in times if key[1] == frame]) for frame in frames)
     for name, seconds in (('drawn to done', lambda rows: max(row[4] for row in rows) - max(row[3] for row in rows)),
                           ('frame', lambda rows: max(row[0] for row in rows)),
                           ('ICET_COMPOSITE_TIME', lambda rows: max(row[1] for row in rows))):
-        ours, theirs = median(delray, seconds), median(icet, seconds)
-        print(f'  {name}: {1e3 * ours:.2f} ms for {1e3 * theirs:.2f} ms of IceT, {ours / theirs:.2f}', flush=True)
+        theirs, ours = ([median(turn[side], seconds) for turn in turns] for side in (0, 1))
+        ratios = [mine / other for mine, other in zip(ours, theirs)]
+        print(f'  {name}: {1e3 * statistics.median(ours):.2f} ms for {1e3 * statistics.median(theirs):.2f} ms of IceT, '
+              f'{statistics.median(ratios):.2f} ({" ".join(f"{ratio:.2f}" for ratio in ratios)})', flush=True)
 
 
 def main():
@@ -116,7 +119,11 @@ def main():
     parser.add_argument('--size', default='400x300')
     parser.add_argument('--frames', type=int, default=2)
     parser.add_argument('--times', action='store_true')
+    parser.add_argument('--turns', type=int, default=1)
     args = parser.parse_args()
+    for library in (args.delray, args.record):
+        if not library.exists():  # LD_PRELOAD only warns, and IceT would be compared with itself
+            sys.exit(f'{library} is not there')
     args.width, args.height = (int(value) for value in args.size.split('x'))
     for program in ('pvbatch', 'pvserver', 'pvpython', 'xvfb-run', 'mpirun'):
         if shutil.which(program) is None:
@@ -126,11 +133,14 @@ def main():
         os.execvpe('xvfb-run', ['xvfb-run', '-a', '-s', '-noreset -screen 0 1920x1200x24', sys.executable] + sys.argv, dict(os.environ, WITH_XVFB='1'))
     for kind in args.kinds.split(','):
         for ranks in [4] if 'tiles' in kind else [int(value) for value in args.ranks.split(',')]:
-            icet, icet_times = run(args, kind, ranks, 'icet')
-            delray, delray_times = run(args, kind, ranks, 'delray')
-            compare(kind, ranks, icet, delray)
+            turns = []
+            for _ in range(args.turns):
+                icet, icet_times = run(args, kind, ranks, 'icet')
+                delray, delray_times = run(args, kind, ranks, 'delray')
+                compare(kind, ranks, icet, delray)
+                turns.append((icet_times, delray_times))
             if args.times:
-                print_times(kind, ranks, icet_times, delray_times)
+                print_times(turns)
 
 
 if __name__ == '__main__':
