@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "comm/communicator.h"
 #include "delaunay/outline.h"
 #include "delaunay/points.h"
 #include "delaunay/triangulation.h"
@@ -47,7 +48,21 @@ struct RefineCounts {
   std::uint64_t excepted = 0;     // triangles below the bound by a small corner
   // Triangles and segments that double precision is too coarse to cut.
   std::uint64_t too_fine = 0;
-  std::uint64_t denied = 0;  // insertions tried again because another thread was there
+  std::uint64_t denied = 0;  // insertions tried again because another thread or rank was there
+  std::uint64_t rounds = 0;  // of ranks
+};
+
+// What a rank did.
+struct RefineRank {
+  std::uint64_t triangles = 0;            // that it had at the beginning, with neighbours of these
+  std::uint64_t most_triangles = 0;       // that it had a place for, its own and those of others
+  std::uint64_t points = 0;               // that it added
+  std::uint64_t fetched = 0;              // copies of triangles of others
+  std::uint64_t requests = 0;             // of locks of single triangles of others
+  std::uint64_t denials = 0;              // of requests
+  std::uint64_t returned = 0;             // changed triangles of others
+  std::uint64_t messages = 0, bytes = 0;  // sent to other ranks
+  double waiting_seconds = 0;             // for messages; by the communicator's clock
 };
 
 // A refined triangulation.
@@ -63,13 +78,15 @@ struct Refined {
   std::vector<std::array<std::uint32_t, 2>> segments;
   std::vector<SmallCorner> small_corners;
   RefineCounts counts;
+  std::vector<RefineRank> ranks;  // of refinements over ranks
 };
 
 // An entry of the table of refinements.
 struct RefinementMethod {
   std::string_view name;
   std::string_view description;
-  bool parallel = false;  // makes use of several threads
+  bool parallel = false;     // makes use of several threads
+  bool distributed = false;  // makes use of several ranks
 };
 
 std::span<const RefinementMethod> refinement_methods();
@@ -85,7 +102,7 @@ std::span<const RefinementMethod> refinement_methods();
 // apart, the triangle stays and is counted.
 //
 // Method "chew" calls a triangle large by its circle and cuts it at the centre of that (Chew 1989);
-// "okusanya" lets threads do it, by locks.
+// "okusanya" lets threads refine, by locks.
 //
 // Segments that cross get a point there; parts of segments that lie upon each other count once.
 // Expected O(n log n) for n points of the result.
@@ -94,6 +111,15 @@ std::span<const RefinementMethod> refinement_methods();
 // segments that join no rows, options out of range, and where segments enclose nothing;
 // std::length_error beyond max_points; parallel::Interrupted.
 Refined refine(const Outline& outline, const RefineOptions& options);
+
+// Collective: ranks refine parts of the triangulation that rank 0 makes of its outline. Outline,
+// number of points and threads are those of rank 0, other options are the same everywhere, and the
+// result is rank 0's, that of others empty. It depends on the number of ranks, not on their speed.
+// Method "auto" is the first that has ranks.
+//
+// Throws as the above, on all ranks.
+Refined refine(comm::Communicator& communicator, const Outline& outline,
+               const RefineOptions& options);
 
 // The triangles of the domain alone.
 Triangulation domain_of(const Refined& refined);

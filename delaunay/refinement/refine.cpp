@@ -1,5 +1,5 @@
 // The triangulation of the points, its segments made edges, its domain found, its pieces and
-// triangles cut; then the triangles as rows.
+// triangles cut; then the triangles as rows. Ranks cut, rank 0 does the rest.
 #include "delaunay/refine.h"
 
 #include <cmath>
@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "comm/agree_on_failure.h"
+#include "comm/collectives.h"
 #include "delaunay/flip/flip_2d.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/interpolate.h"
@@ -81,6 +83,8 @@ struct Task {
   RefinementMesh mesh;
   std::vector<std::uint32_t> rows;  // of the vertices that the input has
   RefineCounts counts;
+  std::optional<Triangulation> given;  // where there are heights
+  std::vector<SmallCorner> corners;    // by vertices
 };
 
 void take_mesh(Task& task, BuiltMesh<2>&& built) {
@@ -251,12 +255,12 @@ std::uint32_t row_of(const Task& task, VertexNumber v) {
 }
 
 // Heights of the added points: along segments between their ends, else of the given triangulation.
-void add_heights(const Task& task, const Triangulation& given, Refined& refined) {
+void add_heights(const Task& task, Refined& refined) {
   const RefinementMesh& mesh = task.mesh;
   const std::size_t n = task.outline.points.size();
   std::vector<double> heights(n);
   for (std::size_t row = 0; row < n; ++row) heights[row] = refined.points[row].z;
-  const Query query(view(task.outline.points.positions), given);
+  const Query query(view(task.outline.points.positions), *task.given);
   const auto is_on_segment = [&](VertexNumber v) { return mesh.ends[v] != internal::kOnNoSegment; };
   const auto first = static_cast<VertexNumber>(task.rows.size());
   for (VertexNumber v = first; v < mesh.vertices; ++v) {
@@ -317,40 +321,94 @@ std::uint64_t count_excepted(const RefinementMesh& mesh, const internal::Triangl
   return count;
 }
 
+internal::RefinementLimits limits_of(const RefineOptions& options) {
+  return {options.threads, most_vertices(options), options.progress};
+}
+
+// Everything before triangles are cut. False if there are none.
+bool prepare(Task& task) {
+  Options how;
+  how.threads = task.options.threads;
+  BuiltMesh<2> built = build_mesh<2>(view(task.outline.points.positions), how);
+  if (is_flat(built.mesh)) {
+    task.mesh.vertices = static_cast<VertexNumber>(built.distinct);
+    return false;
+  }
+  take_mesh(task, std::move(built));
+  if (task.outline.points.has_z) task.given = result_of(task).triangulation;
+  recover_segments(task.mesh, segments_of(task), limits_of(task.options), task.counts);
+  task.corners = internal::find_small_corners(task.mesh);
+  find_domain(task);
+  check_area(task.mesh, task.options);
+  return true;
+}
+
+Refined flat_result(const Task& task) {
+  Refined flat;
+  flat.points = task.outline.points.positions;
+  flat.triangulation.distinct = task.mesh.vertices;
+  return flat;
+}
+
+// Everything after.
+Refined finish(Task& task, const internal::TriangleBounds& bounds) {
+  make_delaunay(task.mesh);
+  task.counts.excepted = count_excepted(task.mesh, bounds);
+  Refined refined = result_of(task);
+  for (SmallCorner& corner : task.corners) corner.row = row_of(task, corner.row);
+  refined.small_corners = std::move(task.corners);
+  refined.counts = task.counts;
+  if (task.given) add_heights(task, refined);
+  return refined;
+}
+
 }  // namespace
 
 Refined refine(const Outline& outline, const RefineOptions& options) {
   check(outline, options);
   const internal::RefinementWay way = internal::refinement_way(options.method);
-  Task task{outline, options, {}, {}, {}};
-  Options how;
-  how.threads = options.threads;
-  BuiltMesh<2> built = build_mesh<2>(view(outline.points.positions), how);
-  if (is_flat(built.mesh)) {
-    Refined flat;
-    flat.points = outline.points.positions;
-    flat.triangulation.distinct = built.distinct;
-    return flat;
-  }
-  take_mesh(task, std::move(built));
-  std::optional<Triangulation> given;
-  if (outline.points.has_z) given = result_of(task).triangulation;
-  RefinementMesh& mesh = task.mesh;
-  const internal::RefinementLimits limits{options.threads, most_vertices(options),
-                                          options.progress};
-  recover_segments(mesh, segments_of(task), limits, task.counts);
-  std::vector<SmallCorner> corners = internal::find_small_corners(mesh);
-  find_domain(task);
-  check_area(mesh, options);
+  Task task{outline, options, {}, {}, {}, {}, {}};
+  if (!prepare(task)) return flat_result(task);
   const internal::TriangleBounds bounds(options.min_angle, options.max_area, way.measure);
-  way.run(mesh, bounds, limits, task.counts);
-  make_delaunay(mesh);
-  task.counts.excepted = count_excepted(mesh, bounds);
-  Refined refined = result_of(task);
-  for (SmallCorner& corner : corners) corner.row = row_of(task, corner.row);
-  refined.small_corners = std::move(corners);
-  refined.counts = task.counts;
-  if (given) add_heights(task, *given, refined);
+  way.run(task.mesh, bounds, limits_of(options), task.counts);
+  return finish(task, bounds);
+}
+
+Refined refine(comm::Communicator& communicator, const Outline& outline,
+               const RefineOptions& options) {
+  const internal::RefinementWay way = internal::refinement_way(options.method, true);
+  Task task{outline, options, {}, {}, {}, {}, {}};
+  struct Prepared {
+    std::uint64_t has_triangles, has_too_many, most_vertices;
+  } prepared{};
+  comm::all_or_none(communicator, comm::Phase::other, [&] {
+    if (communicator.rank() != 0) return;
+    check(outline, options);
+    prepared.most_vertices = most_vertices(options);
+    try {
+      prepared.has_triangles = prepare(task) ? 1 : 0;
+    } catch (const std::length_error&) {
+      prepared.has_too_many = 1;
+    }
+  });
+  prepared =
+      comm::broadcast(communicator, 0, comm::Buffer::of_value(prepared)).as<Prepared>().front();
+  internal::RefinementLimits limits = limits_of(options);
+  limits.most_vertices = prepared.most_vertices;
+  if (prepared.has_too_many != 0) {
+    throw comm::Agreed<std::length_error>(internal::too_many_points(limits.most_vertices));
+  }
+  const bool is_first = communicator.rank() == 0;
+  if (prepared.has_triangles == 0) return is_first ? flat_result(task) : Refined{};
+  const internal::TriangleBounds bounds(options.min_angle, options.max_area, way.measure);
+  std::vector<RefineRank> ranks =
+      way.run_over_ranks(communicator, task.mesh, bounds, limits, task.counts);
+  Refined refined;
+  comm::all_or_none(communicator, comm::Phase::other, [&] {
+    if (!is_first) return;
+    refined = finish(task, bounds);
+    refined.ranks = std::move(ranks);
+  });
   return refined;
 }
 

@@ -1,7 +1,6 @@
 // Ruppert's refinement by one thread that is alone with the mesh: pieces of segments before
 // triangles, the worst triangle first.
 #include <stdexcept>
-#include <string>
 
 #include "delaunay/refinement/refinement_runs.h"
 #include "delaunay/refinement/refiner.h"
@@ -15,6 +14,8 @@ class SoleAccess {
       : mesh_(&mesh), limits_(&limits) {}
 
   static bool acquire(SimplexNumber) { return true; }
+  static bool claim() { return true; }
+  static bool keeps(SimplexNumber) { return true; }
   static void release() {}
   bool prepare() {
     mesh_->reserve(1);
@@ -22,8 +23,7 @@ class SoleAccess {
   }
   VertexNumber vertex() {
     if (mesh_->vertices >= limits_->most_vertices) {
-      throw std::length_error("refinement takes more than " +
-                              std::to_string(limits_->most_vertices) + " points");
+      throw std::length_error(too_many_points(limits_->most_vertices));
     }
     if (limits_->progress != nullptr) limits_->progress->advance();
     return mesh_->vertices++;
@@ -37,15 +37,21 @@ class SoleAccess {
 
 }  // namespace
 
-void refine_alone(RefinementMesh& mesh, const TriangleBounds& bounds,
-                  const RefinementLimits& limits, RefineCounts& counts) {
+void refine_alone_until(RefinementMesh& mesh, const TriangleBounds& bounds,
+                        const RefinementLimits& limits, SimplexNumber triangles,
+                        RefineCounts& counts) {
   Refiner<SoleAccess> refiner(mesh, bounds, SoleAccess(mesh, limits));
   suspect_all(mesh, refiner, 0, mesh.triangles);
-  while (refiner.step()) {
+  while (mesh.triangles < triangles && refiner.step()) {
   }
   counts.on_segments += refiner.counts().on_segments;
   counts.inside += refiner.counts().inside;
   counts.too_fine += refiner.counts().too_fine;
+}
+
+void refine_alone(RefinementMesh& mesh, const TriangleBounds& bounds,
+                  const RefinementLimits& limits, RefineCounts& counts) {
+  refine_alone_until(mesh, bounds, limits, kMaximumSimplices, counts);
 }
 
 }  // namespace delray::delaunay::internal

@@ -108,6 +108,8 @@ class LockingAccess {
     end_ = first + SharedMesh::kVertices;
     return true;
   }
+  static bool claim() { return true; }
+  static bool keeps(SimplexNumber) { return true; }
   VertexNumber vertex() {
     shared_->count_vertex();
     triangle_ = shared_->triangle_of(next_);

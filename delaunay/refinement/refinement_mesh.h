@@ -33,9 +33,13 @@ class RefinementMesh {
   Array<glm::dvec2> points;   // per vertex
   Array<SegmentEnds> ends;    // per vertex: of the segment that it was put on
   Array<std::uint8_t> acute;  // per vertex: whether segments meet there at less than 60 degrees
-  // Per segment with a small corner, ends ascending: how far from its first end pieces are cut by
-  // distances from there, the others by those from the second.
-  std::map<SegmentEnds, double> reaches;
+  // Per segment with a small corner, ends ascending: how far from one end pieces are cut by
+  // distances from there, the others by those from the other end.
+  struct Reach {
+    VertexNumber from = kInfiniteVertex;
+    double length = 0;
+  };
+  std::map<SegmentEnds, Reach> reaches;
   SimplexNumber triangles = 0;  // slots in use
   VertexNumber vertices = 0;
   // Coordinates that differ by less are taken for equal by those who cut segments: some units of

@@ -23,9 +23,11 @@ constexpr std::array kRows = {
          "one thread, triangles of one size by their circles, the largest first (Chew 1989)"},
         {&internal::refine_alone, Measure::circle}},
     Row{{"okusanya",
-         "threads that lock the triangles of a cavity, or are denied (Okusanya and Peraire 1996)",
-         true},
-        {&internal::refine_with_locks, Measure::area}},
+         "threads or ranks that lock the triangles of a cavity, or are denied (Okusanya and "
+         "Peraire "
+         "1996)",
+         true, true},
+        {&internal::refine_with_locks, Measure::area, &internal::refine_over_ranks}},
 };
 
 constexpr auto kMethods = [] {
@@ -38,15 +40,15 @@ constexpr auto kMethods = [] {
 
 std::span<const RefinementMethod> refinement_methods() { return kMethods; }
 
-internal::RefinementWay internal::refinement_way(std::string_view name) {
-  if (name == "auto") name = kRows.front().method.name;
+internal::RefinementWay internal::refinement_way(std::string_view name, bool over_ranks) {
   std::string names;
   for (const Row& row : kRows) {
-    if (row.method.name == name) return row.way;
+    if (over_ranks && !row.method.distributed) continue;
+    if (name == "auto" || row.method.name == name) return row.way;
     names += " " + std::string(row.method.name);
   }
-  throw std::invalid_argument("no refinement is called \"" + std::string(name) + "\"; legal are" +
-                              names);
+  throw std::invalid_argument("no refinement " + std::string(over_ranks ? "over ranks " : "") +
+                              "is called \"" + std::string(name) + "\"; legal are" + names);
 }
 
 }  // namespace delray::delaunay

@@ -30,11 +30,19 @@ namespace delray::delaunay::internal {
 // `Access` grants triangles and numbers of new ones (mesh/access.h):
 //   bool acquire(SimplexNumber)          to read, and to write if the step is finished
 //   bool prepare()                       room for a vertex and two triangles; false: stop
-//   VertexNumber vertex()                and two triangle()s, after prepare()
+//   bool claim()                         whether a step that has acquired all it needs may write
+//   VertexNumber vertex()                and two triangle()s, after claim()
 //   void release()                       the end of a step
+//   bool keeps(SimplexNumber)            whether what was denied there is to be tried again here
 template <class Access>
 class Refiner {
  public:
+  // A piece of a segment.
+  struct Piece {
+    CornerNumber corner;  // opposite to it
+    VertexNumber start, end;
+  };
+
   Refiner(RefinementMesh& mesh, const TriangleBounds& bounds, Access access)
       : mesh_(mesh), cuts_(mesh), bounds_(bounds), access_(std::move(access)) {}
 
@@ -42,6 +50,8 @@ class Refiner {
   void suspect_segment(CornerNumber corner) {
     if (is_encroached(corner)) add_segment(corner);
   }
+  // A piece to be cut, unless it is no piece any more.
+  void add_piece(const Piece& piece) { segments_.push_back(piece); }
   // A triangle of the domain.
   void suspect_triangle(SimplexNumber t) {
     if (const unsigned urgency = bounds_.urgency(shape(t)); urgency > 0) add_triangle(t, urgency);
@@ -63,15 +73,36 @@ class Refiner {
     return true;
   }
   bool is_done() const { return segments_.empty() && triangles_.empty(); }
-  // What was denied comes again. Returns how much that is.
+  // What was denied comes again. Returns how much that is. REQUIRES: nobody writes.
   std::size_t retry() {
     const std::size_t count = denied_segments_.size() + denied_.size();
     segments_.insert(segments_.end(), denied_segments_.begin(), denied_segments_.end());
-    // Rather last than first: who was there may be gone then.
-    for (const Triangle& triangle : denied_) triangles_.push(triangle, 1);
+    for (const Triangle& triangle : denied_) {
+      if (!is_gone(triangle)) triangles_.push(triangle, bounds_.urgency(shape(triangle.number)));
+    }
     denied_segments_.clear();
     denied_.clear();
+    denied_pieces_.clear();
     return count;
+  }
+  // Tries what was denied, and nothing else, with an access that claims nothing.
+  void rehearse() {
+    const std::vector<Piece> segments = std::exchange(segments_, {});
+    UrgentQueue<Triangle> triangles = std::exchange(triangles_, {});
+    const std::uint64_t denied = counts_.denied;
+    retry();
+    while (step()) {
+    }
+    counts_.denied = denied;
+    elsewhere_.clear();
+    segments_ = segments;
+    triangles_ = std::move(triangles);
+  }
+  // Pieces that were denied and are not kept here.
+  std::vector<Piece> take_elsewhere() { return std::exchange(elsewhere_, {}); }
+  // What waits, and what was denied.
+  std::size_t pending() const {
+    return segments_.size() + triangles_.size() + denied_segments_.size() + denied_.size();
   }
   std::size_t triangles() const { return triangles_.size(); }
   // Gives half of the triangles to another.
@@ -81,10 +112,6 @@ class Refiner {
   const RefineCounts& counts() const { return counts_; }
 
  private:
-  struct Piece {
-    CornerNumber corner;  // opposite to it
-    VertexNumber start, end;
-  };
   struct Triangle {
     SimplexNumber number;
     std::array<VertexNumber, 3> vertices;
@@ -164,6 +191,7 @@ class Refiner {
       if (uncut_.insert(ascending(piece.start, piece.end)).second) ++counts_.too_fine;
       return;
     }
+    if (!access_.claim()) return deny(piece);
     insert(q, cuts_.segment_of(piece.start, piece.end));
     ++counts_.on_segments;
   }
@@ -199,10 +227,11 @@ class Refiner {
   };
   Walked walk_to(SimplexNumber from, const glm::dvec2& q) {
     CornerNumber entry = kDeadVertex;
+    std::uint32_t random = 2 * from + 1;  // the next time the way is the same
     for (SimplexNumber t = from;;) {
       CornerNumber exit = kDeadVertex;
       // Any first edge: constrained triangulations have ways round for a fixed one.
-      CornerNumber corner = corner_of(t, next_random(random_) % 3);
+      CornerNumber corner = corner_of(t, next_random(random) % 3);
       for (int k = 0; k < 3 && exit == kDeadVertex; ++k, corner = next_corner(corner)) {
         if (corner == entry) continue;
         if (orient2d(mesh_.at(next_corner(corner)), mesh_.at(previous_corner(corner)), q) < 0) {
@@ -250,11 +279,12 @@ class Refiner {
       }
     }
     if (!encroached_.empty()) return cut_instead(triangle, encroached_);
+    if (!access_.claim()) return deny(triangle);
     insert(place, kOnNoSegment);
     ++counts_.inside;
   }
 
-  // Pieces of segments for the triangle, which comes again after them.
+  // Pieces of segments for the triangle, which comes again after them, or as they were denied.
   template <class Corners>
   void cut_instead(const Triangle& triangle, const Corners& corners) {
     for (const CornerNumber corner : corners) {
@@ -262,18 +292,28 @@ class Refiner {
           ascending(vertex(next_corner(corner)), vertex(previous_corner(corner)));
       if (uncut_.contains(ends)) return give_up();
     }
-    for (const CornerNumber corner : corners) add_segment(corner);
+    bool is_denied = !access_.claim();
+    for (const CornerNumber corner : corners) {
+      if (denied_pieces_.contains(
+              ascending(vertex(next_corner(corner)), vertex(previous_corner(corner))))) {
+        is_denied = true;
+      } else {
+        add_segment(corner);
+      }
+    }
+    if (is_denied) return deny(triangle);
     triangles_.push(triangle, bounds_.urgency(shape(triangle.number)));
   }
   void give_up() { ++counts_.too_fine; }
 
   void deny(const Piece& piece) {
     ++counts_.denied;
-    denied_segments_.push_back(piece);
+    denied_pieces_.insert(ascending(piece.start, piece.end));
+    (access_.keeps(simplex_of(piece.corner)) ? denied_segments_ : elsewhere_).push_back(piece);
   }
   void deny(const Triangle& triangle) {
     ++counts_.denied;
-    denied_.push_back(triangle);
+    if (access_.keeps(triangle.number)) denied_.push_back(triangle);
   }
 
   RefinementMesh& mesh_;
@@ -284,12 +324,12 @@ class Refiner {
   std::vector<Piece> segments_;
   UrgentQueue<Triangle> triangles_;
   std::vector<Triangle> denied_;
-  std::vector<Piece> denied_segments_;
+  std::vector<Piece> denied_segments_, elsewhere_;
+  std::set<SegmentEnds> denied_pieces_;
   std::vector<CornerNumber> encroached_;
   // Pieces that doubles are too coarse to cut.
   std::set<SegmentEnds> uncut_;
   RefineCounts counts_;
-  std::uint32_t random_ = 1;
 };
 
 // Shows a refiner the triangles [first, last) and their pieces.

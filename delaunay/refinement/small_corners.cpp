@@ -34,10 +34,11 @@ class SmallCornerReaches {
       longest = std::max(longest, reach);
     }
   }
-  std::map<SegmentEnds, double> reaches() const {
-    std::map<SegmentEnds, double> result;
+  std::map<SegmentEnds, RefinementMesh::Reach> reaches() const {
+    std::map<SegmentEnds, RefinementMesh::Reach> result;
     for (const auto& [segment, of_ends] : found_) {
-      result[segment] = of_ends[0] / (of_ends[0] + of_ends[1]) * length(segment[0], segment[1]);
+      const double share = of_ends[0] / (of_ends[0] + of_ends[1]);
+      result[segment] = {segment[0], share * length(segment[0], segment[1])};
     }
     return result;
   }

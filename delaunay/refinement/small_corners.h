@@ -63,7 +63,9 @@ class SegmentCuts {
     const auto reach = mesh_.reaches.find(key);
     if (reach == mesh_.reaches.end()) return std::nullopt;
     const glm::dvec2 middle = 0.5 * mesh_.points[start] + 0.5 * mesh_.points[end];
-    return key[glm::length(middle - mesh_.points[key[0]]) <= reach->second ? 0 : 1];
+    const auto& [from, length] = reach->second;
+    const bool is_within = glm::length(middle - mesh_.points[from]) <= length;
+    return is_within == (from == key[0]) ? key[0] : key[1];
   }
 
   double distance(VertexNumber a, VertexNumber b) const {

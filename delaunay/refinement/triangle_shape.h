@@ -55,6 +55,8 @@ class TriangleBounds {
   }
 
   bool is_large(const TriangleShape& shape) const { return most_ > 0 && size(shape) > most_; }
+  // About how many triangles of the largest size there are in one; 0 without that bound.
+  double pieces(const TriangleShape& shape) const { return most_ > 0 ? size(shape) / most_ : 0; }
   bool is_skinny(const TriangleShape& shape) const { return shape.smallest_sine < sine_; }
 
   // Large triangles come first, the largest of them before others, then skinny ones, the worst
