@@ -13,6 +13,7 @@
 #include "apps/options/numbers.h"
 #include "apps/terminal/progress_bar.h"
 #include "apps/triangulate/run_statistics.h"
+#include "comm/agree_on_failure.h"
 #include "delaunay/quality.h"
 #include "delaunay/refine.h"
 #include "delaunay/write_mesh.h"
@@ -55,10 +56,11 @@ std::size_t most_points(const TriangulateOptions& options) {
       std::max<std::uint64_t>(1, options.input.limits.budget().left() / kBytesOfRefinedPoint));
 }
 
-delaunay::Refined refine_outline(Session& session, const TriangulateOptions& options,
-                                 const delaunay::Outline& outline) {
-  const ProgressBar bar(session, "refine");
-  session.progress.start(0);
+bool has_ranks(const Session& session, const TriangulateOptions& options) {
+  return options.launch.ranks > 1 || session.processes > 1;
+}
+
+delaunay::RefineOptions refine_options(Session& session, const TriangulateOptions& options) {
   delaunay::RefineOptions how;
   how.min_angle = options.refinement.min_angle.value_or(kDefaultMinAngle);
   how.max_area = options.refinement.max_area.value_or(0);
@@ -66,8 +68,14 @@ delaunay::Refined refine_outline(Session& session, const TriangulateOptions& opt
   how.max_points = most_points(options);
   how.threads = options.how.threads;
   how.progress = &session.progress;
+  return how;
+}
+
+// What `refine` gives. Throws FileErrors in place of its exceptions.
+template <class Refine>
+delaunay::Refined with_file_errors(const TriangulateOptions& options, const Refine& refine) {
   try {
-    return refine(outline, how);
+    return refine();
   } catch (const std::length_error& error) {
     throw files::FileError(files::Cause::memory, options.input.path, "",
                            fmt::format("{}, which is all that --memory ({}) holds", error.what(),
@@ -112,6 +120,24 @@ Json refinement_json(const delaunay::Refined& refined, const delaunay::Quality& 
           {"small_corners", corners}};
 }
 
+Json ranks_json(const delaunay::Refined& refined) {
+  Json ranks = Json::array();
+  for (const delaunay::RefineRank& rank : refined.ranks) {
+    ranks.push_back({{"rank", ranks.size()},
+                     {"triangles", rank.triangles},
+                     {"most_triangles", rank.most_triangles},
+                     {"points", rank.points},
+                     {"fetched", rank.fetched},
+                     {"requests", rank.requests},
+                     {"denials", rank.denials},
+                     {"returned", rank.returned},
+                     {"messages", rank.messages},
+                     {"bytes", rank.bytes},
+                     {"waiting_seconds", rank.waiting_seconds}});
+  }
+  return ranks;
+}
+
 void tell(const TriangulateOptions& options, const delaunay::Refined& refined,
           const delaunay::Quality& quality, double largest) {
   const delaunay::RefineCounts& counts = refined.counts;
@@ -133,6 +159,72 @@ void tell(const TriangulateOptions& options, const delaunay::Refined& refined,
     spdlog::warn("{}: {} triangles or segments are too fine for double precision to be cut",
                  options.input.path, counts.too_fine);
   }
+}
+
+// Writes the mesh and the statistics of what is refined.
+void write_refined(const TriangulateOptions& options, delaunay::Outline& outline,
+                   delaunay::Refined& refined, Seconds seconds) {
+  Stopwatch watch;
+  const std::size_t given = outline.points.size();
+  delaunay::Triangulation domain = domain_of(refined);
+  domain.hull_facets = hull_facets(domain).size() / 2;
+  const delaunay::Quality reached = quality(delaunay::view(refined.points), domain);
+  const double largest = largest_area(refined.points, domain);
+  const delaunay::Triangulation& result = options.refinement.whole ? refined.triangulation : domain;
+  warn_of_no_simplices(options, result.size());
+  Json statistics = statistics_of(options, given, result, result.size(), hash(result), seconds);
+  add_phases({}, statistics);
+  tell_no_choices(statistics);
+  statistics["options"].update(
+      {{"method", "refine"},
+       {"refinement", options.refinement.method.empty() ? "auto" : options.refinement.method},
+       {"min_angle", options.refinement.min_angle.value_or(kDefaultMinAngle)},
+       {"max_area", options.refinement.max_area.value_or(0)},
+       {"whole", options.refinement.whole}});
+  statistics["refinement"] = refinement_json(refined, reached, largest);
+  if (!refined.ranks.empty()) {
+    statistics["options"]["ranks"] = refined.ranks.size();
+    statistics["refinement"]["rounds"] = refined.counts.rounds;
+    statistics["refinement"]["ranks"] = ranks_json(refined);
+  }
+  outline.points.positions = std::move(refined.points);
+  add_output(write_triangulation(options.output, options.input, outline.points, result, {}),
+             statistics);
+  statistics["seconds"]["write"] = watch.lap();
+  write_statistics(options.statistics, statistics);
+  tell_result(2, outline.points.size(), result.distinct, result.size(), seconds.triangulate);
+  refined.points.clear();
+  tell(options, refined, reached, largest);
+}
+
+// Only one process has the points.
+int refine_over_ranks(Session& session, const TriangulateOptions& options) {
+  Stopwatch watch;
+  Seconds seconds;
+  delaunay::Outline outline;
+  if (session.first_process) outline = load_outline(options);
+  seconds.read = watch.lap();
+  const ProgressBar bar(session, "refine");
+  session.progress.start(0);
+  const parallel::AllowThreads allowed(std::max(1, options.launch.ranks) * options.how.threads);
+  run_ranks(session, options.launch, options.input.paths, [&](comm::Communicator& communicator) {
+    Stopwatch own_watch;
+    std::exception_ptr failure;
+    delaunay::Refined refined;
+    try {
+      refined = with_file_errors(
+          options, [&] { return refine(communicator, outline, refine_options(session, options)); });
+    } catch (const files::FileError&) {  // of all ranks
+      failure = std::current_exception();
+    }
+    comm::agree_on_failure(communicator, failure);
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() != 0) return;
+      seconds.triangulate = own_watch.lap();
+      write_refined(options, outline, refined, seconds);
+    });
+  });
+  return kDone;
 }
 
 }  // namespace
@@ -168,57 +260,43 @@ void check_refine(const Session& session, TriangulateOptions& options) {
   const delaunay::Options& how = options.how;
   if (how.dim != 2) throw UsageError("--min-angle and --max-area are for the plane, --dim 2");
   if (chooses_insertion(how) || how.seed != defaults.seed || options.makers || options.max_error ||
-      !options.distributed.empty() || !options.launch.record.empty()) {
+      !options.distributed.empty()) {
     throw UsageError(
-        fmt::format("--min-angle and --max-area leave no choice of {}, of seed, makers, max-error, "
-                    "distributed and record",
+        fmt::format("--min-angle and --max-area leave no choice of {}, of seed, makers, max-error "
+                    "and distributed",
                     kInsertionChoices));
   }
-  if (is_tiled(session, options)) {
-    throw UsageError("--min-angle and --max-area: not with several ranks or tiles");
+  if (options.tiles.given()) throw UsageError("--min-angle and --max-area: not with tiles");
+  const std::string& method = options.refinement.method;
+  if (has_ranks(session, options) && !method.empty() && method != "auto" &&
+      !find_entry(delaunay::refinement_methods(), method, "--refinement").distributed) {
+    throw UsageError("--refinement " + method + ": not with several ranks");
   }
   check_output(options.output, options.input, how.dim);
   check(session, options.launch);
-  options.how.threads = threads_per_rank(options.launch, 1);
+  options.how.threads = threads_per_rank(
+      options.launch, session.under_mpi ? processes_here() : std::max(1, options.launch.ranks));
   check_output_paths(options.output, options.statistics, options.input.paths);
 }
 
 int refine_points(Session& session, const TriangulateOptions& options) {
+  if (has_ranks(session, options)) return refine_over_ranks(session, options);
   const parallel::AllowThreads allowed(options.how.threads);
   parallel::Arena arena(options.how.threads);
   return arena.execute([&] {
     Stopwatch watch;
     Seconds seconds;
     delaunay::Outline outline = load_outline(options);
-    const std::size_t given = outline.points.size();
     seconds.read = watch.lap();
-    delaunay::Refined refined = refine_outline(session, options, outline);
+    delaunay::Refined refined;
+    {
+      const ProgressBar bar(session, "refine");
+      session.progress.start(0);
+      refined = with_file_errors(options,
+                                 [&] { return refine(outline, refine_options(session, options)); });
+    }
     seconds.triangulate = watch.lap();
-    delaunay::Triangulation domain = domain_of(refined);
-    domain.hull_facets = hull_facets(domain).size() / 2;
-    const delaunay::Quality reached = quality(delaunay::view(refined.points), domain);
-    const double largest = largest_area(refined.points, domain);
-    const delaunay::Triangulation& result =
-        options.refinement.whole ? refined.triangulation : domain;
-    warn_of_no_simplices(options, result.size());
-    Json statistics = statistics_of(options, given, result, result.size(), hash(result), seconds);
-    add_phases({}, statistics);
-    tell_no_choices(statistics);
-    statistics["options"].update(
-        {{"method", "refine"},
-         {"refinement", options.refinement.method.empty() ? "auto" : options.refinement.method},
-         {"min_angle", options.refinement.min_angle.value_or(kDefaultMinAngle)},
-         {"max_area", options.refinement.max_area.value_or(0)},
-         {"whole", options.refinement.whole}});
-    statistics["refinement"] = refinement_json(refined, reached, largest);
-    outline.points.positions = std::move(refined.points);
-    add_output(write_triangulation(options.output, options.input, outline.points, result, {}),
-               statistics);
-    statistics["seconds"]["write"] = watch.lap();
-    write_statistics(options.statistics, statistics);
-    tell_result(2, outline.points.size(), result.distinct, result.size(), seconds.triangulate);
-    refined.points.clear();
-    tell(options, refined, reached, largest);
+    write_refined(options, outline, refined, seconds);
     return kDone;
   });
 }
