@@ -85,7 +85,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/files", {"mesh"}},
     {"delaunay/pieces", {"files"}},
     {"delaunay/outlines", {"files", "mesh"}},
-    {"delaunay/refinement", {"flip", "insertion", "mesh", "predicates"}},
+    {"delaunay/refinement", {"distributed", "flip", "insertion", "mesh", "predicates"}},
     {"delaunay/points", {"cavity", "flip", "insertion", "mesh", "order", "predicates"}},
     {"delaunay/queries", {"mesh"}},
     {"delaunay/tiles", {"mesh"}},

@@ -18,25 +18,34 @@ std::uint64_t key_of(const PartId& id) { return std::uint64_t{id.rank} << 32 | i
 // The vertices of a message, each once.
 class VertexList {
  public:
-  explicit VertexList(const MeshPart& part) : part_(part) {}
+  // `places` has one for each vertex, all kInfiniteVertex, before and after.
+  VertexList(const MeshPart& part, std::vector<std::uint32_t>& places)
+      : part_(part), places_(places) {}
+  ~VertexList() {
+    for (const VertexNumber v : vertices_) places_[v] = kInfiniteVertex;
+  }
+  VertexList(const VertexList&) = delete;
+  VertexList& operator=(const VertexList&) = delete;
 
   std::uint32_t place_of(VertexNumber v) {
-    if (v == kInfiniteVertex) return v;
-    if (const auto at = places_.find(v); at != places_.end()) return at->second;
+    if (v == kInfiniteVertex || places_[v] != kInfiniteVertex) {
+      return v == kInfiniteVertex ? v : places_[v];
+    }
     const RefinementMesh& mesh = part_.mesh;
     SegmentEnds ends = mesh.ends[v];
     for (VertexNumber& end : ends) end = place_of(end);
-    const auto place = static_cast<std::uint32_t>(records_.size());
+    places_[v] = static_cast<std::uint32_t>(records_.size());
+    vertices_.push_back(v);
     records_.push_back({part_.vertex_id(v), mesh.points[v], ends, mesh.acute[v]});
-    places_.emplace(v, place);
-    return place;
+    return places_[v];
   }
   const std::vector<VertexRecord>& records() const { return records_; }
 
  private:
   const MeshPart& part_;
+  std::vector<std::uint32_t>& places_;
+  std::vector<VertexNumber> vertices_;
   std::vector<VertexRecord> records_;
-  std::unordered_map<VertexNumber, std::uint32_t> places_;
 };
 
 }  // namespace
@@ -99,9 +108,11 @@ VertexNumber MeshPart::make_vertex() {
 
 SimplexNumber MeshPart::make_triangle() { return add_slot({rank_, mesh.triangles}); }
 
-void MeshPart::pack(std::span<const SimplexNumber> triangles, Packer& to) const {
-  VertexList vertices(*this);
+void MeshPart::pack(std::span<const SimplexNumber> triangles, Packer& to) {
+  places_.resize(mesh.vertices, kInfiniteVertex);
+  VertexList vertices(*this, places_);
   std::vector<TriangleRecord> records;
+  records.reserve(triangles.size());
   std::map<SegmentEnds, ReachRecord> reaches;
   const SegmentCuts cuts(mesh);
   for (const SimplexNumber t : triangles) {
@@ -133,7 +144,10 @@ std::vector<SimplexNumber> MeshPart::unpack(Unpacker& from) {
     comm::check_message(place < numbers.size());
     return numbers[place];
   };
-  for (const VertexRecord& record : from.list<VertexRecord>()) {  // ends before what lies between
+  const auto records = from.list<VertexRecord>();
+  numbers.reserve(records.size());
+  if (known_.empty()) known_.reserve(records.size());
+  for (const VertexRecord& record : records) {  // ends before what lies between
     std::optional<VertexNumber> v = find_vertex(record.id);
     if (!v) {
       v = add_vertex(record.id);

@@ -1,6 +1,7 @@
 // A rank's part of a mesh that is being refined, and how triangles travel between ranks.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -76,7 +77,7 @@ class MeshPart {
   SimplexNumber make_triangle();
 
   // Triangles with their vertices, and what cutting their pieces takes.
-  void pack(std::span<const SimplexNumber> triangles, Packer& to) const;
+  void pack(std::span<const SimplexNumber> triangles, Packer& to);
   // Returns the triangles. Throws comm::BadMessage.
   std::vector<SimplexNumber> unpack(Unpacker& from);
   // A triangle of another rank, whose copy is of no use any more.
@@ -92,6 +93,7 @@ class MeshPart {
   std::vector<bool> is_here_;
   std::vector<VertexNumber> made_;                                  // by number from given_ on
   std::unordered_map<std::uint64_t, std::uint32_t> slots_, known_;  // of other ranks
+  std::vector<std::uint32_t> places_;                               // for pack()
 };
 
 }  // namespace delray::delaunay::internal

@@ -84,7 +84,7 @@ MeshPart distribute_parts(comm::Communicator& communicator, RefinementMesh& mesh
     for (std::uint32_t rank = 0; rank < parts.size(); ++rank) {
       for (std::uint32_t i = 0; i < parts[rank].size(); ++i) ids[parts[rank][i]] = {rank, i};
     }
-    const MeshPart whole(std::exchange(mesh, {}), std::move(ids));
+    MeshPart whole(std::exchange(mesh, {}), std::move(ids));
     for (std::size_t rank = 0; rank < parts.size(); ++rank) {
       Packer packer;
       packer.value(static_cast<std::uint64_t>(whole.given()));
@@ -105,7 +105,7 @@ MeshPart distribute_parts(comm::Communicator& communicator, RefinementMesh& mesh
   return part;
 }
 
-void gather_parts(comm::Communicator& communicator, const MeshPart& part, RefinementMesh& mesh) {
+void gather_parts(comm::Communicator& communicator, MeshPart& part, RefinementMesh& mesh) {
   Packer packer;
   packer.value(static_cast<std::uint64_t>(part.made()));
   std::vector<SimplexNumber> own;

@@ -15,6 +15,6 @@ MeshPart distribute_parts(comm::Communicator& communicator, RefinementMesh& mesh
 
 // Collective: the triangles of all parts by ascending rank, in the `mesh` of rank 0. Given vertices
 // have the numbers that they had, others follow by ascending rank.
-void gather_parts(comm::Communicator& communicator, const MeshPart& part, RefinementMesh& mesh);
+void gather_parts(comm::Communicator& communicator, MeshPart& part, RefinementMesh& mesh);
 
 }  // namespace delray::delaunay::internal

@@ -10,13 +10,12 @@
 
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
-#include "delaunay/flip/flip_2d.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/interpolate.h"
 #include "delaunay/mesh/arguments.h"
 #include "delaunay/mesh/build_mesh.h"
 #include "delaunay/mesh/equal_points.h"
-#include "delaunay/predicates/conflict.h"
+#include "delaunay/refinement/make_delaunay.h"
 #include "delaunay/refinement/recover_segments.h"
 #include "delaunay/refinement/refinement_runs.h"
 #include "delaunay/refinement/small_corners.h"
@@ -198,56 +197,6 @@ void check_area(const RefinementMesh& mesh, const RefineOptions& options) {
   }
 }
 
-// Flips as internal::flip() does, and keeps marks of edges. Those of the flipped edge go.
-void flip_with_marks(RefinementMesh& mesh, CornerNumber corner) {
-  const CornerNumber beyond = mesh.mesh.neighbour(corner);
-  const CornerNumber right = next_corner(corner), left = previous_corner(corner);
-  const CornerNumber beyond_right = previous_corner(beyond), beyond_left = next_corner(beyond);
-  const bool near_left = mesh.is_segment(right), near_right = mesh.is_segment(left),
-             far_left = mesh.is_segment(beyond_right), far_right = mesh.is_segment(beyond_left);
-  internal::flip(mesh.mesh, corner);
-  const auto bit = [](CornerNumber at, bool is_one) {
-    return static_cast<std::uint8_t>(is_one ? 1U << (at & 3U) : 0U);
-  };
-  const auto inside = [&](CornerNumber at) {
-    return static_cast<std::uint8_t>(mesh.marks(simplex_of(at)) & RefinementMesh::kInside);
-  };
-  mesh.set_marks(
-      simplex_of(corner),
-      static_cast<std::uint8_t>(inside(corner) | bit(corner, far_right) | bit(left, near_right)));
-  mesh.set_marks(simplex_of(beyond),
-                 static_cast<std::uint8_t>(inside(beyond) | bit(beyond, near_left) |
-                                           bit(beyond_right, far_left)));
-}
-
-// Whatever pieces are left that could not be cut: the result is the triangulation of its points.
-void make_delaunay(RefinementMesh& mesh) {
-  std::vector<CornerNumber> suspects;
-  const auto is_wrong = [&](CornerNumber corner) {
-    const VertexNumber v = mesh.mesh.vertex(corner);
-    return v != kInfiniteVertex &&
-           conflict(mesh.mesh, mesh.places(), simplex_of(mesh.mesh.neighbour(corner)),
-                    mesh.points[v]);
-  };
-  for (SimplexNumber t = 0; t < mesh.triangles; ++t) {
-    if (mesh.mesh.is_dead(t)) continue;
-    for (unsigned k = 0; k < 3; ++k) {
-      const CornerNumber corner = corner_of(t, k);
-      if (corner < mesh.mesh.neighbour(corner) && is_wrong(corner)) suspects.push_back(corner);
-    }
-  }
-  while (!suspects.empty()) {
-    const CornerNumber corner = suspects.back();
-    suspects.pop_back();
-    if (!is_wrong(corner)) continue;
-    const SimplexNumber across = simplex_of(mesh.mesh.neighbour(corner));
-    flip_with_marks(mesh, corner);
-    for (const SimplexNumber t : {simplex_of(corner), across}) {
-      for (unsigned k = 0; k < 3; ++k) suspects.push_back(corner_of(t, k));
-    }
-  }
-}
-
 std::uint32_t row_of(const Task& task, VertexNumber v) {
   const auto given = static_cast<VertexNumber>(task.rows.size());
   return v < given ? task.rows[v]
@@ -352,7 +301,7 @@ Refined flat_result(const Task& task) {
 
 // Everything after.
 Refined finish(Task& task, const internal::TriangleBounds& bounds) {
-  make_delaunay(task.mesh);
+  internal::make_delaunay(task.mesh);
   task.counts.excepted = count_excepted(task.mesh, bounds);
   Refined refined = result_of(task);
   for (SmallCorner& corner : task.corners) corner.row = row_of(task, corner.row);
