@@ -1,6 +1,7 @@
 // Sorts triangles into the squares of the picture that they may be seen in, by counting. Threads
 // share out rows of squares, so that nobody waits for anybody.
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -12,20 +13,31 @@
 namespace delray::raytrace {
 namespace {
 
+static_assert(kBinBlocks == 4);
+
+// Bits [first, last) of kBinBlocks.
+std::uint32_t bits_between(int first, int last) { return (1U << last) - (1U << first); }
+
+// Bits of the blocks [x0, x1) x [y0, y1) of a square.
+std::uint32_t blocks_of(int x0, int x1, int y0, int y1) {
+  // A bit for the first block of each row that there is, times the bits of a row.
+  const std::uint32_t rows = 0x1111U & bits_between(kBinBlocks * y0, kBinBlocks * y1);
+  return rows * bits_between(x0, x1);
+}
+
 // Calls f(square, blocks of it that the triangle may be seen in) for all squares with any in rows
 // [first, last).
 template <class F>
 void for_each_square(const SeenTriangle& seen, int columns, int first, int last, F&& f) {
-  const auto within = [](int bin, int begin, int end) {
-    return std::min(end, (bin + 1) * kBinBlocks) - std::max(begin, bin * kBinBlocks);
-  };
   const int y0 = std::max(first, seen.y0 / kBinBlocks);
   const int y1 = std::min(last, (seen.y1 + kBinBlocks - 1) / kBinBlocks);
   const int x0 = seen.x0 / kBinBlocks, x1 = (seen.x1 + kBinBlocks - 1) / kBinBlocks;
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) {
+      const int left = x * kBinBlocks, top = y * kBinBlocks;
       f(static_cast<std::size_t>(y * columns + x),
-        static_cast<std::uint32_t>(within(x, seen.x0, seen.x1) * within(y, seen.y0, seen.y1)));
+        blocks_of(std::max(seen.x0 - left, 0), std::min(seen.x1 - left, kBinBlocks),
+                  std::max(seen.y0 - top, 0), std::min(seen.y1 - top, kBinBlocks)));
     }
   }
 }
@@ -69,7 +81,7 @@ TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
   };
   walk([&](const SeenTriangle&, std::size_t square, std::uint32_t blocks) {
     ++bins.first[square];
-    bins.blocks[square] += blocks;
+    bins.blocks[square] += static_cast<std::uint32_t>(std::popcount(blocks));
   });
   std::uint64_t sum = 0;
   for (std::uint32_t& first : bins.first)
@@ -78,8 +90,8 @@ TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
     throw std::length_error("--primary raster: triangles are seen in too many squares");
   bins.triangles.resize(sum);
   std::vector<std::uint32_t> next = bins.first;
-  walk([&](const SeenTriangle& triangle, std::size_t square, std::uint32_t) {
-    bins.triangles[next[square]++] = triangle;
+  walk([&](const SeenTriangle& t, std::size_t square, std::uint32_t blocks) {
+    bins.triangles[next[square]++] = {t.instance, t.triangle, t.nearest, blocks};
   });
   return bins;
 }

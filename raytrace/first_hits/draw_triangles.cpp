@@ -12,6 +12,7 @@
 #include "raytrace/first_hits/draw_triangles.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "raytrace/scene/edges.h"
@@ -62,13 +63,34 @@ void set_up_triangles(const CornerLanes& corners, const RaySpace& space, SetUpTr
   }
 }
 
-// One of the triangles that are set up.
-struct DrawnTriangle {
-  F3 plane[3], normal;
-  F depth, margin;
-  bool firm;
-  std::uint32_t triangle, geometry, instance;  // as Embree names them
+// Sixteen triangles of a space, and the blocks that each is to be drawn into.
+struct DrawnBatch {
+  const BinnedTriangle* triangle[kPacketRays];
+  shading::LaneMask blocks[kPacketRays];
+  int size = 0;
 };
+
+// A triangle of a batch and a block of the square, as one number.
+HWY_INLINE int triangle_of(std::int32_t pair) { return pair / kSquareBlocks; }
+HWY_INLINE int block_of(std::int32_t pair) { return pair % kSquareBlocks; }
+
+// All of the batch, without branches, as their numbers cannot be foreseen.
+struct DrawnPairs {
+  HWY_ALIGN std::int32_t pair[kPacketRays * kSquareBlocks + kPacketRays];
+  int size = 0;
+};
+HWY_INLINE void list_pairs(const DrawnBatch& batch, DrawnPairs& pairs) {
+  const IntTag d;
+  pairs.size = 0;
+  for (int k = 0; k < batch.size; ++k) {
+    for (int i = 0; i < kSquareBlocks; i += lanes()) {
+      const auto mask = hn::RebindMask(d, mask_of(batch.blocks[k], i));
+      const I all = hn::Iota(d, kSquareBlocks * k + i);
+      hn::StoreU(hn::Compress(all, mask), d, pairs.pair + pairs.size);
+      pairs.size += std::popcount(batch.blocks[k] >> i & shading::first_lanes(lanes()));
+    }
+  }
+}
 
 HWY_INLINE F3 lane_of(const shading::Vectors16& v, int k) {
   return {set(v.x[k]), set(v.y[k]), set(v.z[k])};
@@ -89,27 +111,14 @@ HWY_INLINE void put_some(F v, M mask, float* to) {
 // twice what depths that are firm may be off.
 constexpr float kTie = 1.0F + 0x1p-13F;
 
-// Lanes i, i + 1, ... of a block.
-struct DrawnLanes {
-  DrawnBlock* block;
-  int i;
-};
-
-HWY_INLINE F3 directions_of(const DrawnLanes& at, bool is_world) {
-  if (!is_world) return load(at.block->direction, at.i);
-  const RayPacket& packet = at.block->group->packet;
-  return {load_floats(packet.direction_x + at.i), load_floats(packet.direction_y + at.i),
-          load_floats(packet.direction_z + at.i)};
-}
-
 struct EdgeFunctions {
   F u, v, w, sum;
   M passes;
 };
-HWY_INLINE EdgeFunctions edge_functions(const DrawnTriangle& t, const F3& direction) {
-  EdgeFunctions e{exact_dot(t.plane[0], direction),
-                  exact_dot(t.plane[1], direction),
-                  exact_dot(t.plane[2], direction),
+HWY_INLINE EdgeFunctions edge_functions(const SetUpTriangles& t, int k, const F3& direction) {
+  EdgeFunctions e{exact_dot(lane_of(t.plane[0], k), direction),
+                  exact_dot(lane_of(t.plane[1], k), direction),
+                  exact_dot(lane_of(t.plane[2], k), direction),
                   {},
                   {}};
   e.sum = e.u + e.v + e.w;
@@ -119,39 +128,35 @@ HWY_INLINE EdgeFunctions edge_functions(const DrawnTriangle& t, const F3& direct
   return e;
 }
 
-HWY_INLINE void find_beyond(DrawnBlock& block) {
-  F most = set(0.0F);
-  for (int i = 0; i < kPacketRays; i += lanes())
-    most = hn::Max(most, load_floats(block.group->packet.far + i));
-  block.came_nearer = false;
-  block.beyond = kTie * hn::GetLane(hn::MaxOfLanes(FloatTag(), most));
-}
+// As Embree names them.
+struct TriangleNumbers {
+  std::uint32_t triangle, geometry, instance;
+};
 
-// Of lanes of which some are within all edges.
-void draw_lanes(const DrawnTriangle& t, const DrawnLanes& at, bool is_world) {
-  const int i = at.i;
-  DrawnBlock& block = *at.block;
+// Triangle k into lanes i, i + 1, ... of a block. Returns whether any came nearer.
+HWY_INLINE bool draw_lanes(const SetUpTriangles& t, int k, const TriangleNumbers& numbers,
+                           DrawnBlock& block, int i) {
   RayPacket& packet = block.group->packet;
-  const F3 direction = directions_of(at, is_world);
-  const EdgeFunctions e = edge_functions(t, direction);
-  const F half = exact_dot(t.normal, direction);
+  const F3 direction = load(block.direction, i);
+  const EdgeFunctions e = edge_functions(t, k, direction);
+  const F half = exact_dot(lane_of(t.normal, k), direction);
   const F denominator = half + half;
-  const F distance = exact_reciprocal(denominator) * t.depth;
+  const F distance = exact_reciprocal(denominator) * set(t.depth[k]);
   const F far = load_floats(packet.far + i);
   const F infinity = set(std::numeric_limits<float>::infinity());
   const M passes =
       hn::And(hn::And(e.passes, hn::Ne(denominator, set(0.0F))),
               hn::And(hn::Ge(distance, load_floats(packet.near + i)), hn::Le(distance, infinity)));
-  if (!t.firm) {
+  if ((t.firm >> k & 1) == 0) {
     block.unsure |= bits_of(passes, i);
-    return;
+    return false;
   }
   const F second = load(block.second, i);
   const F next = hn::Min(second, hn::Max(distance, far));
   hn::Store(hn::IfThenElse(passes, next, second), FloatTag(), block.second.lane + i);
   const M nearer = hn::And(passes, hn::Lt(distance, far));
   const shading::LaneMask now = bits_of(nearer, i);
-  if (now == 0) return;
+  if (now == 0) return false;
 
   const F inverse =
       hn::IfThenElseZero(hn::Ge(hn::Abs(e.sum), set(1e-18F)), exact_reciprocal(e.sum));
@@ -159,114 +164,119 @@ void draw_lanes(const DrawnTriangle& t, const DrawnLanes& at, bool is_world) {
   put_some(distance, nearer, packet.far + i);
   put_some(hn::Min(e.u * inverse, one), nearer, packet.u + i);
   put_some(hn::Min(e.v * inverse, one), nearer, packet.v + i);
-  put_numbers(t.triangle, nearer, packet.triangle + i);
-  put_numbers(t.geometry, nearer, packet.geometry + i);
-  put_numbers(t.instance, nearer, packet.instance + i);
+  put_numbers(numbers.triangle, nearer, packet.triangle + i);
+  put_numbers(numbers.geometry, nearer, packet.geometry + i);
+  put_numbers(numbers.instance, nearer, packet.instance + i);
   const F inside = hn::Min(hn::Abs(e.u), hn::Min(hn::Abs(e.v), hn::Abs(e.w)));
-  const shading::LaneMask safe = bits_of(hn::Gt(inside, t.margin), i);
+  const shading::LaneMask safe = bits_of(hn::Gt(inside, set(t.margin[k])), i);
   block.edge = (block.edge & ~now) | (now & ~safe);
-  block.came_nearer = true;
+  return true;
 }
 
-template <int kCount>
-HWY_INLINE void draw_at_once(const DrawnTriangle& t, const DrawnLanes* at, bool is_world) {
-  shading::LaneMask passes[kCount];
-  for (int k = 0; k < kCount; ++k)
-    passes[k] = bits_of(edge_functions(t, directions_of(at[k], is_world)).passes, at[k].i);
-  for (int k = 0; k < kCount; ++k) {
-    if (passes[k] != 0) draw_lanes(t, at[k], is_world);
+// Leaves of the pairs those of which the triangle passes a ray.
+HWY_INLINE void keep_passing(const SetUpTriangles& t, const DrawnSquare& square,
+                             DrawnPairs& pairs) {
+  int kept = 0;
+  for (int p = 0; p < pairs.size; ++p) {
+    const std::int32_t pair = pairs.pair[p];
+    const DrawnBlock& block = square.blocks[block_of(pair)];
+    shading::LaneMask passes = 0;
+    for (int i = 0; i < kPacketRays; i += lanes())
+      passes |= bits_of(edge_functions(t, triangle_of(pair), load(block.direction, i)).passes, i);
+    pairs.pair[kept] = pair;
+    kept += passes != 0 ? 1 : 0;
   }
+  pairs.size = kept;
 }
 
-// A triangle into all of its blocks that do not hide it, some at a time: edge functions of several
-// blocks are computed before any of them is looked at, as what they are cannot be foreseen.
-HWY_INLINE void draw_triangle(const DrawnTriangle& t, const SeenTriangle& seen, bool is_world,
-                              const DrawnBlocks& blocks) {
-  const int x0 = std::max(0, seen.x0 - blocks.x0), y0 = std::max(0, seen.y0 - blocks.y0);
-  const int x1 = std::min(blocks.columns, seen.x1 - blocks.x0);
-  const int y1 = std::min(blocks.rows, seen.y1 - blocks.y0);
-  constexpr int kAtOnce = 4;
-  DrawnLanes at[kAtOnce];
-  int count = 0;
-  const auto draw = [&] {
-    switch (count) {
-      case 1:
-        draw_at_once<1>(t, at, is_world);
-        break;
-      case 2:
-        draw_at_once<2>(t, at, is_world);
-        break;
-      case 3:
-        draw_at_once<3>(t, at, is_world);
-        break;
-      default:
-        draw_at_once<kAtOnce>(t, at, is_world);
-    }
-    count = 0;
-  };
-  for (int y = y0; y < y1; ++y) {
-    for (int x = x0; x < x1; ++x) {
-      DrawnBlock& block = blocks.blocks[static_cast<std::size_t>(y * blocks.columns + x)];
-      if (seen.nearest > block.beyond) continue;
-      for (int i = 0; i < kPacketRays; i += lanes()) {
-        at[count++] = {&block, i};
-        if (count == kAtOnce) draw();
-      }
-    }
+HWY_INLINE void find_beyond(DrawnSquare& square) {
+  for (shading::LaneMask rest = square.unlimited; rest != 0; rest &= rest - 1) {
+    const int b = std::countr_zero(rest);
+    F most = set(0.0F);
+    for (int i = 0; i < kPacketRays; i += lanes())
+      most = hn::Max(most, load_floats(square.blocks[b].group->packet.far + i));
+    square.beyond[b] = kTie * hn::GetLane(hn::MaxOfLanes(FloatTag(), most));
   }
-  if (count > 0) draw();
+  square.unlimited = 0;
+}
+
+// The triangles of a batch into their blocks, those that pass a ray first: whether they do is as
+// hard to foresee.
+void draw_batch(const RaySpaces& scene, const DrawnBatch& batch, DrawnSquare& square) {
+  const std::uint32_t instance = batch.triangle[0]->instance;
+  const RaySpace& space = scene.of(instance);
+  CornerLanes corners;
+  for (int k = 0; k < batch.size; ++k) {
+    const BinnedTriangle& binned = *batch.triangle[k];
+    const GeometryInstance& its = scene.instances[binned.instance];
+    set_corners(its.positions, its.mesh->triangles[binned.triangle], k, corners);
+  }
+  for (int k = batch.size; k < kPacketRays; ++k) clear_corners(k, corners);
+  SetUpTriangles set_up;
+  set_up_triangles(corners, space, set_up);
+  DrawnPairs pairs;
+  list_pairs(batch, pairs);
+  keep_passing(set_up, square, pairs);
+  for (int p = 0; p < pairs.size; ++p) {
+    const int k = triangle_of(pairs.pair[p]), b = block_of(pairs.pair[p]);
+    const BinnedTriangle& triangle = *batch.triangle[k];
+    const TriangleNumbers numbers{triangle.triangle, space.is_world ? triangle.instance : 0,
+                                  space.is_world ? kMiss : triangle.instance};
+    bool nearer = false;
+    for (int i = 0; i < kPacketRays; i += lanes())
+      nearer = draw_lanes(set_up, k, numbers, square.blocks[b], i) || nearer;
+    square.unlimited |= nearer ? 1U << b : 0U;
+  }
 }
 
 // Directions as Embree brings them to a space.
-void find_directions(const RaySpace& space, const DrawnBlocks& blocks) {
+void find_directions(const RaySpace& space, DrawnSquare& square) {
   const F3 x = set(space.to_local[0]), y = set(space.to_local[1]), z = set(space.to_local[2]);
-  for (DrawnBlock& block : blocks.blocks) {
+  for (shading::LaneMask rest = square.drawn; rest != 0; rest &= rest - 1) {
+    DrawnBlock& block = square.blocks[std::countr_zero(rest)];
     const RayPacket& packet = block.group->packet;
     for (int i = 0; i < kPacketRays; i += lanes()) {
-      const F dx = load_floats(packet.direction_x + i), dy = load_floats(packet.direction_y + i);
-      const F dz = load_floats(packet.direction_z + i);
+      const F3 d{load_floats(packet.direction_x + i), load_floats(packet.direction_y + i),
+                 load_floats(packet.direction_z + i)};
       const auto moved = [&](F a, F b, F c) {
-        return hn::MulAdd(dx, a, hn::MulAdd(dy, b, dz * c));
+        return hn::MulAdd(d.x, a, hn::MulAdd(d.y, b, d.z * c));
       };
-      put_lanes({moved(x.x, y.x, z.x), moved(x.y, y.y, z.y), moved(x.z, y.z, z.z)}, block.direction,
-                i);
+      const F3 local{moved(x.x, y.x, z.x), moved(x.y, y.y, z.y), moved(x.z, y.z, z.z)};
+      put_lanes(space.is_world ? d : local, block.direction, i);
     }
   }
 }
 
-void draw_triangles_of(std::span<const GeometryInstance> instances, const RaySpace& space,
-                       std::span<const SeenTriangle> triangles, const DrawnBlocks& blocks) {
-  if (!space.is_world) find_directions(space, blocks);
-  CornerLanes corners;
-  SetUpTriangles set_up;
-  for (std::size_t begin = 0; begin < triangles.size(); begin += kPacketRays) {
-    const std::size_t count = std::min<std::size_t>(kPacketRays, triangles.size() - begin);
-    for (std::size_t k = 0; k < count; ++k) {
-      const SeenTriangle& seen = triangles[begin + k];
-      const GeometryInstance& instance = instances[seen.instance];
-      set_corners(instance.positions, instance.mesh->triangles[seen.triangle], static_cast<int>(k),
-                  corners);
-    }
-    for (std::size_t k = count; k < kPacketRays; ++k) clear_corners(static_cast<int>(k), corners);
-    set_up_triangles(corners, space, set_up);
-    for (std::size_t k = 0; k < count; ++k) {
-      const SeenTriangle& seen = triangles[begin + k];
-      const int lane = static_cast<int>(k);
-      const DrawnTriangle t{{lane_of(set_up.plane[0], lane), lane_of(set_up.plane[1], lane),
-                             lane_of(set_up.plane[2], lane)},
-                            lane_of(set_up.normal, lane),
-                            set(set_up.depth[lane]),
-                            set(set_up.margin[lane]),
-                            (set_up.firm >> k & 1) != 0,
-                            seen.triangle,
-                            space.is_world ? seen.instance : 0,
-                            space.is_world ? kMiss : seen.instance};
-      draw_triangle(t, seen, space.is_world, blocks);
-    }
-    for (DrawnBlock& block : blocks.blocks) {
-      if (block.came_nearer) find_beyond(block);
-    }
+// Blocks of the square that do not hide the triangle.
+HWY_INLINE shading::LaneMask seen_blocks(const BinnedTriangle& triangle,
+                                         const DrawnSquare& square) {
+  shading::LaneMask hidden = 0;
+  for (int i = 0; i < kSquareBlocks; i += lanes())
+    hidden |= bits_of(hn::Gt(set(triangle.nearest), load(square.beyond, i)), i);
+  return triangle.blocks & square.drawn & ~hidden;
+}
+
+void draw_triangles_of(const RaySpaces& scene, std::span<const BinnedTriangle> triangles,
+                       DrawnSquare& square) {
+  const std::uint32_t none = static_cast<std::uint32_t>(scene.spaces.size());
+  std::uint32_t space = none;
+  DrawnBatch batch;
+  const auto draw = [&] {
+    if (batch.size != 0) draw_batch(scene, batch, square);
+    batch.size = 0;
+    find_beyond(square);
+  };
+  for (const BinnedTriangle& triangle : triangles) {
+    const shading::LaneMask blocks = seen_blocks(triangle, square);
+    if (blocks == 0) continue;
+    const std::uint32_t its = scene.numbers[triangle.instance];
+    if (its != space || batch.size == kPacketRays) draw();
+    if (its != space) find_directions(scene.spaces[its], square);
+    space = its;
+    batch.triangle[batch.size] = &triangle;
+    batch.blocks[batch.size++] = blocks;
   }
+  if (batch.size != 0) draw_batch(scene, batch, square);
 }
 
 bool keep_certain(DrawnBlock& block) {
@@ -299,17 +309,20 @@ namespace delray::raytrace {
 HWY_EXPORT(draw_triangles_of);
 HWY_EXPORT(keep_certain);
 
-void draw_triangles(std::span<const GeometryInstance> instances, const RaySpace& space,
-                    std::span<const SeenTriangle> triangles, const DrawnBlocks& blocks) {
-  HWY_DYNAMIC_DISPATCH(draw_triangles_of)(instances, space, triangles, blocks);
+void DrawnSquare::clear() { drawn = unlimited = 0; }
+
+void DrawnSquare::add(int block, RayGroup& group) {
+  DrawnBlock& to = blocks[block];
+  to.group = &group;
+  to.unsure = to.edge = 0;
+  beyond[block] = std::numeric_limits<float>::infinity();
+  for (float& second : to.second.lane) second = beyond[block];
+  drawn |= 1U << block;
 }
 
-void clear_drawn(RayGroup& group, DrawnBlock& block) {
-  block.group = &group;
-  block.unsure = block.edge = 0;
-  block.came_nearer = false;
-  block.beyond = std::numeric_limits<float>::infinity();
-  for (float& second : block.second.lane) second = block.beyond;
+void draw_triangles(const RaySpaces& scene, std::span<const BinnedTriangle> triangles,
+                    DrawnSquare& square) {
+  HWY_DYNAMIC_DISPATCH(draw_triangles_of)(scene, triangles, square);
 }
 
 bool keep_certain_hits(DrawnBlock& block) { return HWY_DYNAMIC_DISPATCH(keep_certain)(block); }

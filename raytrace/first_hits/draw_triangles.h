@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "raytrace/first_hits/triangle_bins.h"
 #include "raytrace/scene/ray_batch.h"
@@ -13,27 +12,27 @@ namespace delray::raytrace {
 // A block's rays while triangles are drawn. Their packet has the nearest hit so far.
 struct DrawnBlock {
   RayGroup* group = nullptr;
-  shading::Vectors16 direction;  // in the space of the triangles at hand, unless that is the world
+  shading::Vectors16 direction;  // in the space of the triangles at hand
   shading::Floats16 second;      // distance of the second nearest hit
-  float beyond = 0;              // further hits make no difference
-  bool came_nearer = false;      // since `beyond` was found
   shading::LaneMask unsure = 0;  // lanes that something met of which nothing is certain
   shading::LaneMask edge = 0;    // lanes whose nearest hit is not safely inside of its triangle
 };
 
-// Blocks of a rectangle of the window, row by row: (x0 + i, y0 + j) is element j * columns + i.
-struct DrawnBlocks {
-  int x0 = 0, y0 = 0, columns = 0, rows = 0;
-  std::span<DrawnBlock> blocks;
+// A square of the window; block b is bit b of BinnedTriangle::blocks.
+struct DrawnSquare {
+  DrawnBlock blocks[kSquareBlocks];
+  shading::Floats16 beyond;         // element b: hits in block b that are further away do not count
+  shading::LaneMask drawn = 0;      // blocks that have a group of rays
+  shading::LaneMask unlimited = 0;  // those of them whose `beyond` is not the least it could be
+
+  void clear();
+  // Of rays without hits yet.
+  void add(int block, RayGroup& group);
 };
 
-// No hits yet.
-void clear_drawn(RayGroup& group, DrawnBlock& block);
-
-// REQUIRES: all triangles are of instances in this space; the blocks' groups have no hits but of
-// triangles that were drawn before.
-void draw_triangles(std::span<const GeometryInstance> instances, const RaySpace& space,
-                    std::span<const SeenTriangle> triangles, const DrawnBlocks& blocks);
+// REQUIRES: the groups of the square have no hits but of triangles that were drawn before.
+void draw_triangles(const RaySpaces& scene, std::span<const BinnedTriangle> triangles,
+                    DrawnSquare& square);
 
 // Whether all active lanes have for certain the hit, or the miss, that Embree would find. If not,
 // all get back their miss, to be traced together: Embree may find another one of two hits at nearly

@@ -35,8 +35,8 @@ HWY_BEFORE_NAMESPACE();
 namespace delray::raytrace {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE void put_box(F v, shading::Floats16& to, int i) {
-  hn::Store(v, FloatTag(), to.lane + i);
+HWY_INLINE void put_blocks(F v, std::int32_t* to, int i) {
+  hn::Store(truncated(v), IntTag(), to + i);
 }
 
 // Which of the lanes are hit by no ray, as all their corners lie beyond one plane.
@@ -57,9 +57,11 @@ HWY_INLINE M lies_outside(const TriangleLanes& t, const SeenFrom& from) {
   return hn::And(hn::Gt(part, set(0.0F)), sure);
 }
 
-// Boxes of pixels.
+// Boxes of blocks, where they are within the window.
 struct Boxes {
-  shading::Floats16 x0, y0, x1, y1, nearest;
+  HWY_ALIGN std::int32_t x0[kPacketRays], y0[kPacketRays], x1[kPacketRays], y1[kPacketRays];
+  shading::Floats16 nearest;
+  shading::LaneMask within = 0;
 };
 // Returns the lanes that cannot be hit outside.
 HWY_INLINE shading::LaneMask find_boxes(const TriangleLanes& t, const SeenFrom& from, int i,
@@ -94,11 +96,19 @@ HWY_INLINE shading::LaneMask find_boxes(const TriangleLanes& t, const SeenFrom& 
   // Between corners 1 / t is a plane, and beyond them as far as its barycentric coordinates go.
   const M bounded =
       hn::And(hn::And(known, is_firm(t, space, deepest)), hn::Le(noise, set(0x1p-4F)));
-  put_box(hn::IfThenElseZero(bounded, depth * (set(0.999F) - four * noise)), boxes.nearest, i);
-  put_box(hn::Ceil(low_x - margin - set(from.first)), boxes.x0, i);
-  put_box(hn::Ceil(low_y - margin - set(from.first)), boxes.y0, i);
-  put_box(hn::Floor(high_x + margin + set(from.last)), boxes.x1, i);
-  put_box(hn::Floor(high_y + margin + set(from.last)), boxes.y1, i);
+  hn::Store(hn::IfThenElseZero(bounded, depth * (set(0.999F) - four * noise)), FloatTag(),
+            boxes.nearest.lane + i);
+  // The window's pixels of the box, and their blocks.
+  const F x0 = hn::Max(hn::Ceil(low_x - margin - set(from.first)), set(from.x0));
+  const F y0 = hn::Max(hn::Ceil(low_y - margin - set(from.first)), set(from.y0));
+  const F x1 = hn::Min(hn::Floor(high_x + margin + set(from.last)), set(from.x1));
+  const F y1 = hn::Min(hn::Floor(high_y + margin + set(from.last)), set(from.y1));
+  const F side_of_block = set(1.0F / kBlockSide), one = set(1.0F);
+  put_blocks((x0 - set(from.x0)) * side_of_block, boxes.x0, i);
+  put_blocks((y0 - set(from.y0)) * side_of_block, boxes.y0, i);
+  put_blocks((x1 - set(from.x0)) * side_of_block + one, boxes.x1, i);
+  put_blocks((y1 - set(from.y0)) * side_of_block + one, boxes.y1, i);
+  boxes.within |= bits_of(hn::And(hn::Le(x0, x1), hn::Le(y0, y1)), i);
   return bits_of(known, i);
 }
 
@@ -108,6 +118,7 @@ struct SeenLanes {
 };
 SeenLanes find_boxes_of(const CornerLanes& corners, const SeenFrom& from, Boxes& boxes) {
   SeenLanes result;
+  boxes.within = 0;
   for (int i = 0; i < kPacketRays; i += lanes()) {
     F3 position[3];
     load_corners(corners, i, position);
@@ -136,7 +147,7 @@ void find_seen_of(const GeometryInstance& instance, std::uint32_t number, const 
   CornerLanes corners;
   for (int k = 0; k < kPacketRays; ++k) clear_corners(k, corners);
   Boxes boxes;
-  const geometry::Rect& window = from.window;
+  seen.reserve(seen.size() + last - first);
   for (std::uint32_t begin = first; begin < last; begin += kPacketRays) {
     const std::uint32_t count = std::min<std::uint32_t>(kPacketRays, last - begin);
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -151,16 +162,12 @@ void find_seen_of(const GeometryInstance& instance, std::uint32_t number, const 
         find_strip(corners_of(corners, k), from, triangle, seen);
         continue;
       }
-      const float x0 = std::max(boxes.x0[k], from.x0), x1 = std::min(boxes.x1[k], from.x1);
-      const float y0 = std::max(boxes.y0[k], from.y0), y1 = std::min(boxes.y1[k], from.y1);
-      if (!(x0 <= x1 && y0 <= y1)) continue;
-      const auto block = [](float at, int origin) {
-        return static_cast<std::uint16_t>((static_cast<int>(at) - origin) / kBlockSide);
-      };
+      if ((boxes.within >> k & 1) == 0) continue;
       triangle.nearest = boxes.nearest[k];
-      triangle.x0 = block(x0, window.x0), triangle.y0 = block(y0, window.y0);
-      triangle.x1 = static_cast<std::uint16_t>(block(x1, window.x0) + 1);
-      triangle.y1 = static_cast<std::uint16_t>(block(y1, window.y0) + 1);
+      triangle.x0 = static_cast<std::uint16_t>(boxes.x0[k]);
+      triangle.y0 = static_cast<std::uint16_t>(boxes.y0[k]);
+      triangle.x1 = static_cast<std::uint16_t>(boxes.x1[k]);
+      triangle.y1 = static_cast<std::uint16_t>(boxes.y1[k]);
       seen.push_back(triangle);
     }
   }

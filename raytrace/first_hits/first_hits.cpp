@@ -95,12 +95,12 @@ RayGroup rays_to_triangles(std::span<const GeometryInstance> instances,
 // Whether what is drawn here is what Embree finds: its version, its instruction set and its
 // matrices of instances. Expressions that differ in a rounding give other bits for a large part of
 // all rays. None where too few rays hit anything to tell.
-std::optional<bool> finds_same_hits(const Tracer& tracer, std::span<const RaySpace> spaces,
-                                    std::span<const std::uint32_t> space_of,
+std::optional<bool> finds_same_hits(const Tracer& tracer, const RaySpaces& spaces,
                                     std::span<const MeshPart> parts, const scenes::View& view) {
   constexpr std::uint32_t kMostPackets = 32;
   constexpr int kLeastHits = 16, kEnoughHits = 128;
   int hits = 0;
+  DrawnSquare square;
   for (std::uint32_t n = 0; n < kMostPackets && hits < kEnoughHits; ++n) {
     const RayGroup asked = rays_to_triangles(tracer.instances, parts, view, n);
     RayGroup traced = asked;
@@ -109,12 +109,11 @@ std::optional<bool> finds_same_hits(const Tracer& tracer, std::span<const RaySpa
       if (traced.packet.triangle[i] == kMiss) continue;
       const Hit found = hit_of(traced.packet, i);
       RayGroup drawn = asked;
-      DrawnBlock block;
-      clear_drawn(drawn, block);
-      const SeenTriangle triangle{found.instance, found.triangle, 0.0F, 0, 0, 1, 1};
-      const RaySpace& space = spaces[space_of[found.instance]];
-      draw_triangles(tracer.instances, space, {&triangle, 1}, {0, 0, 1, 1, {&block, 1}});
-      if ((block.unsure >> i & 1) != 0) continue;  // nothing would be concluded from it
+      square.clear();
+      square.add(0, drawn);
+      const BinnedTriangle triangle{found.instance, found.triangle, 0.0F, 1};
+      draw_triangles(spaces, {&triangle, 1}, square);
+      if ((square.blocks[0].unsure >> i & 1) != 0) continue;  // nothing would be concluded from it
       if (drawn.packet.triangle[i] == kMiss) return false;
       const Hit hit = hit_of(drawn.packet, i);
       if (hit.distance != found.distance || hit.u != found.u || hit.v != found.v ||
@@ -188,29 +187,15 @@ double drawn_seconds(std::span<const std::vector<SeenTriangle>> seen,
 }
 
 std::vector<std::vector<SeenTriangle>> find_all(const Tracer& tracer, const SeenWindow& window,
-                                                std::span<const RaySpace> spaces,
-                                                std::span<const std::uint32_t> space_of,
+                                                const RaySpaces& spaces,
                                                 std::span<const MeshPart> parts) {
   std::vector<std::vector<SeenTriangle>> seen(parts.size());
   parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) {
     const MeshPart& part = parts[i];
-    find_seen(tracer.instances[part.instance], part.instance, spaces[space_of[part.instance]],
-              window, part.first, part.last, seen[i]);
+    find_seen(tracer.instances[part.instance], part.instance, spaces.of(part.instance), window,
+              part.first, part.last, seen[i]);
   });
   return seen;
-}
-
-// Whether all blocks of a small triangle have nearer hits.
-bool is_hidden(const SeenTriangle& triangle, const DrawnBlocks& blocks) {
-  constexpr int kFew = 9;  // blocks that take no longer than to set up the triangle
-  if (triangle.blocks() > kFew) return false;
-  for (int y = triangle.y0 - blocks.y0; y < triangle.y1 - blocks.y0; ++y) {
-    for (int x = triangle.x0 - blocks.x0; x < triangle.x1 - blocks.x0; ++x) {
-      const DrawnBlock& block = blocks.blocks[static_cast<std::size_t>(y * blocks.columns + x)];
-      if (!(triangle.nearest > block.beyond)) return false;
-    }
-  }
-  return true;
 }
 
 std::string why_unknown(const Tracer& tracer, const SeenWindow& window) {
@@ -239,15 +224,14 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
   const std::vector<MeshPart> parts = mesh_parts(tracer.instances);
   if (parts.empty() || window.pixels.empty()) return {nullptr, "there is nothing to draw"};
   std::unique_ptr<FirstHits> made(new FirstHits());
-  made->instances_ = tracer.instances;
   made->window_ = window.pixels;
   made->spaces_ = ray_spaces(tracer.instances, tracer.embree.to_local(tracer.instances),
-                             window.view, window.longest, made->space_of_);
-  for (const RaySpace& space : made->spaces_) {
+                             window.view, window.longest);
+  for (const RaySpace& space : made->spaces_.spaces) {
     if (!(space.forward_length > 0.0F)) return {nullptr, "an instance has no inverse transform"};
   }
   if (!trials.same) {
-    trials.same = finds_same_hits(tracer, made->spaces_, made->space_of_, parts, window.view);
+    trials.same = finds_same_hits(tracer, made->spaces_, parts, window.view);
   }
   if (!trials.same) return {nullptr, "too few rays hit anything to try Embree's arithmetic"};
   if (!*trials.same) return {nullptr, "Embree's arithmetic is not the one that is known"};
@@ -262,7 +246,7 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
     return {nullptr, kAsFast};
   };
   const auto find = [&](std::span<const MeshPart> some) {
-    return find_all(tracer, window, made->spaces_, made->space_of_, some);
+    return find_all(tracer, window, made->spaces_, some);
   };
   // Some parts first, about as many of a small scene as of a large one.
   constexpr std::size_t kSome = 8, kLeastStep = 4, kMostStep = 64;
@@ -286,12 +270,9 @@ std::uint64_t FirstHits::find(const geometry::Rect& pixels, Groups<RayGroup>& gr
                               Memory& memory) const {
   const int left = (pixels.x0 - window_.x0) / kBlockSide;
   const int top = (pixels.y0 - window_.y0) / kBlockSide;
-  DrawnBlocks blocks{left,
-                     top,
-                     (pixels.width() + kBlockSide - 1) / kBlockSide,
-                     (pixels.height() + kBlockSide - 1) / kBlockSide,
-                     {}};
-  const int right = left + blocks.columns, bottom = top + blocks.rows;
+  const int columns = (pixels.width() + kBlockSide - 1) / kBlockSide;
+  const int right = left + columns;
+  const int bottom = top + (pixels.height() + kBlockSide - 1) / kBlockSide;
   memory.left.resize(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g) memory.left[g] = groups[g].active;
   const auto for_each_bin = [&](auto&& f) {
@@ -301,48 +282,33 @@ std::uint64_t FirstHits::find(const geometry::Rect& pixels, Groups<RayGroup>& gr
   };
   double seconds = kPacketSeconds * static_cast<double>(groups.size());
   for_each_bin([&](int x, int y) {
-    const auto square = static_cast<std::size_t>(y * bins_.columns + x);
-    seconds += kSetUpSeconds * static_cast<double>(bins_.of(x, y).size()) +
+    const std::size_t square = bins_.square(x, y);
+    seconds += kSetUpSeconds * static_cast<double>(bins_.of(square).size()) +
                kTestSeconds * bins_.blocks[square];
   });
   if (seconds > kDense * packet_seconds_ * static_cast<double>(groups.size())) return 0;
 
-  memory.blocks.resize(groups.size());
-  for (std::size_t g = 0; g < groups.size(); ++g) clear_drawn(groups[g], memory.blocks[g]);
-  blocks.blocks = memory.blocks;
-  std::vector<SeenTriangle>& some = memory.triangles;
-  for_each_bin([&](int x, int y) {
-    // Other squares draw the rest of their triangles.
-    const int x0 = std::max(x * kBinBlocks, left), x1 = std::min((x + 1) * kBinBlocks, right);
-    const int y0 = std::max(y * kBinBlocks, top), y1 = std::min((y + 1) * kBinBlocks, bottom);
-    std::uint32_t space = 0;
-    const auto draw = [&] {
-      if (!some.empty()) draw_triangles(instances_, spaces_[space], some, blocks);
-      some.clear();
-    };
-    some.clear();
-    for (SeenTriangle triangle : bins_.of(x, y)) {
-      triangle.x0 = static_cast<std::uint16_t>(std::max<int>(triangle.x0, x0));
-      triangle.y0 = static_cast<std::uint16_t>(std::max<int>(triangle.y0, y0));
-      triangle.x1 = static_cast<std::uint16_t>(std::min<int>(triangle.x1, x1));
-      triangle.y1 = static_cast<std::uint16_t>(std::min<int>(triangle.y1, y1));
-      if (triangle.x0 >= triangle.x1 || triangle.y0 >= triangle.y1) continue;
-      if (is_hidden(triangle, blocks)) continue;
-      if (const std::uint32_t its = space_of_[triangle.instance]; its != space) {
-        draw();
-        space = its;
-      }
-      some.push_back(triangle);
-      if (some.size() == kPacketRays) draw();
-    }
-    draw();
-  });
   std::uint64_t certain = 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (groups[g].misses || !keep_certain_hits(memory.blocks[g])) continue;
-    certain += static_cast<std::uint64_t>(std::popcount(active_lanes(memory.left[g])));
-    memory.left[g] = {};
-  }
+  DrawnSquare& square = memory.square;
+  for_each_bin([&](int x, int y) {
+    square.clear();
+    std::size_t group_of[kSquareBlocks];
+    for (int b = 0; b < kSquareBlocks; ++b) {
+      const int at_x = x * kBinBlocks + b % kBinBlocks, at_y = y * kBinBlocks + b / kBinBlocks;
+      if (at_x < left || at_x >= right || at_y < top || at_y >= bottom) continue;
+      const auto g = static_cast<std::size_t>((at_y - top) * columns + at_x - left);
+      group_of[b] = g;
+      if (!groups[g].misses) square.add(b, groups[g]);
+    }
+    draw_triangles(spaces_, bins_.of(bins_.square(x, y)), square);
+    for (shading::LaneMask rest = square.drawn; rest != 0; rest &= rest - 1) {
+      const int b = std::countr_zero(rest);
+      ActiveRays& its = memory.left[group_of[b]];
+      if (!keep_certain_hits(square.blocks[b])) continue;
+      certain += static_cast<std::uint64_t>(std::popcount(active_lanes(its)));
+      its = {};
+    }
+  });
   return certain;
 }
 

@@ -39,8 +39,7 @@ class FirstHits {
   // Of a thread, used again from call to call.
   struct Memory {
     std::vector<ActiveRays> left;  // element i: rays of group i that have to be traced all the same
-    std::vector<DrawnBlock> blocks;
-    std::vector<SeenTriangle> triangles;
+    DrawnSquare square;
   };
   // Finds the hits of groups of camera rays, those of `pixels`, row by row, but for those `left`:
   // packets with a ray at a silhouette or an edge or where surfaces lie in each other. Returns how
@@ -49,9 +48,7 @@ class FirstHits {
 
  private:
   FirstHits() = default;
-  std::span<const GeometryInstance> instances_;
-  std::vector<RaySpace> spaces_;
-  std::vector<std::uint32_t> space_of_;  // by instance
+  RaySpaces spaces_;
   TriangleBins bins_;
   geometry::Rect window_;
   double packet_seconds_ = 0;  // to trace one

@@ -88,17 +88,17 @@ RaySpace local_space(const GeometryInstance& instance, const glm::mat4x3& to_loc
 
 }  // namespace
 
-std::vector<RaySpace> ray_spaces(std::span<const GeometryInstance> instances,
-                                 std::span<const glm::mat4x3> to_local, const scenes::View& view,
-                                 float longest, std::vector<std::uint32_t>& numbers) {
-  std::vector<RaySpace> spaces = {world_space(view, longest)};
-  numbers.assign(instances.size(), 0);
+RaySpaces ray_spaces(std::span<const GeometryInstance> instances,
+                     std::span<const glm::mat4x3> to_local, const scenes::View& view,
+                     float longest) {
+  RaySpaces result{instances, {world_space(view, longest)}, {}};
+  result.numbers.assign(instances.size(), 0);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     if (!instances[i].instanced || instances[i].mesh == nullptr) continue;
-    numbers[i] = static_cast<std::uint32_t>(spaces.size());
-    spaces.push_back(local_space(instances[i], to_local[i], view, longest));
+    result.numbers[i] = static_cast<std::uint32_t>(result.spaces.size());
+    result.spaces.push_back(local_space(instances[i], to_local[i], view, longest));
   }
-  return spaces;
+  return result;
 }
 
 }  // namespace delray::raytrace

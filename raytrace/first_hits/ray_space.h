@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "raytrace/scene/geometry_instance.h"
@@ -24,11 +25,19 @@ struct RaySpace {
   float off_angle = 0.0F, off_length = 0.0F;
 };
 
-// The world first, then each instance that is an Embree instance. `numbers` gets an element for
-// each instance: its space. `longest`: of the directions in the world. Spaces whose transform has
-// no inverse to speak of have forward_length 0: what is in them cannot be told beforehand.
-std::vector<RaySpace> ray_spaces(std::span<const GeometryInstance> instances,
-                                 std::span<const glm::mat4x3> to_local, const scenes::View& view,
-                                 float longest, std::vector<std::uint32_t>& numbers);
+// The spaces of a scene: the world first, then each instance that is an Embree instance.
+struct RaySpaces {
+  std::span<const GeometryInstance> instances;
+  std::vector<RaySpace> spaces;
+  std::vector<std::uint32_t> numbers;  // by instance
+
+  const RaySpace& of(std::uint32_t instance) const { return spaces[numbers[instance]]; }
+};
+
+// `longest`: of the directions in the world. Spaces whose transform has no inverse to speak of have
+// forward_length 0: what is in them cannot be told beforehand.
+RaySpaces ray_spaces(std::span<const GeometryInstance> instances,
+                     std::span<const glm::mat4x3> to_local, const scenes::View& view,
+                     float longest);
 
 }  // namespace delray::raytrace

@@ -36,17 +36,27 @@ void find_seen(const GeometryInstance& instance, std::uint32_t number, const Ray
 
 inline constexpr int kBinSide = 16;  // pixels
 inline constexpr int kBinBlocks = kBinSide / kBlockSide;
+inline constexpr int kSquareBlocks = kBinBlocks * kBinBlocks;
+
+// A triangle in one of the squares.
+struct BinnedTriangle {
+  std::uint32_t instance = 0, triangle = 0;
+  float nearest = 0;         // as above
+  std::uint32_t blocks = 0;  // bit kBinBlocks * y + x: it may be hit through block (x, y)
+};
 
 // Triangles by squares of kBinSide pixels of the window, row by row.
 struct TriangleBins {
   int columns = 0, rows = 0;
   std::vector<std::uint32_t> first;  // one more than squares
-  std::vector<SeenTriangle> triangles;
+  std::vector<BinnedTriangle> triangles;
   std::vector<std::uint32_t> blocks;  // by square: how many blocks its triangles may be seen in
 
-  std::span<const SeenTriangle> of(int x, int y) const {
-    const auto square = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
-                        static_cast<std::size_t>(x);
+  std::size_t square(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(x);
+  }
+  std::span<const BinnedTriangle> of(std::size_t square) const {
     return std::span(triangles).subspan(first[square], first[square + 1] - first[square]);
   }
 };

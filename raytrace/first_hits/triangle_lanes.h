@@ -35,10 +35,6 @@ using namespace shading::HWY_NAMESPACE;
 constexpr float kNoise = 0x1p-19F, kDepthNoise = 0x1p-20F;
 // Depths that may be off by more are loose: nothing is concluded from them.
 constexpr float kLooseDepth = 0x1p-14F;
-// An edge function of a hit that is safely inside, in the unit of kNoise: what is left of it by
-// noise is a distance of 16u v from the edge, where the boxes around a triangle, which Embree tests
-// with some roundings to spare, are met as well.
-constexpr float kInside = 0x1p-18F;
 // Between these products of lengths neither under- nor overflow, and Embree leaves no corner out.
 constexpr float kTiny = 1e-25F, kHuge = 1e12F;
 
@@ -104,10 +100,12 @@ HWY_INLINE M is_firm(const TriangleLanes& t, const RaySpace& space, F deepest) {
   return hn::And(firm, hn::And(usual, near));
 }
 
-// The edge functions' least magnitude of a hit that is safely inside.
+// The edge functions' least magnitude of a hit that is safely inside: with the sign of the exact
+// one the ray itself meets the triangle, and with it the boxes around it, which are tested so that
+// no rounding leaves out a ray that meets them (Ize 2013).
 HWY_INLINE F inside_margin(const TriangleLanes& t, const RaySpace& space) {
   const F off = set(space.off_angle) * t.farthest + set(space.off_length);
-  return set(space.longest) * t.longest * (set(kInside) * t.farthest + set(4.0F) * off);
+  return set(space.longest) * t.longest * (set(kNoise) * t.farthest + set(4.0F) * off);
 }
 
 // The corners of up to sixteen triangles, as floats one after the other.
