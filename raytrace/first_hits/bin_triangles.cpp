@@ -1,7 +1,6 @@
 // Sorts triangles into the squares of the picture that they may be seen in, by counting. Threads
 // share out rows of squares, so that nobody waits for anybody.
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -15,29 +14,37 @@ namespace {
 
 static_assert(kBinBlocks == 4);
 
-// Bits [first, last) of kBinBlocks.
-std::uint32_t bits_between(int first, int last) { return (1U << last) - (1U << first); }
+// Blocks [x0, x1) x [y0, y1) of a square.
+struct BlockBox {
+  int x0, y0, x1, y1;
 
-// Bits of the blocks [x0, x1) x [y0, y1) of a square.
-std::uint32_t blocks_of(int x0, int x1, int y0, int y1) {
-  // A bit for the first block of each row that there is, times the bits of a row.
-  const std::uint32_t rows = 0x1111U & bits_between(kBinBlocks * y0, kBinBlocks * y1);
-  return rows * bits_between(x0, x1);
-}
+  std::uint32_t count() const { return static_cast<std::uint32_t>((x1 - x0) * (y1 - y0)); }
+  // As bits; a bit for the first block of each row, times the bits of a row.
+  std::uint32_t bits() const {
+    const auto between = [](int first, int last) { return (1U << last) - (1U << first); };
+    return (0x1111U & between(kBinBlocks * y0, kBinBlocks * y1)) * between(x0, x1);
+  }
+};
 
 // Calls f(square, blocks of it that the triangle may be seen in) for all squares with any in rows
 // [first, last).
 template <class F>
 void for_each_square(const SeenTriangle& seen, int columns, int first, int last, F&& f) {
-  const int y0 = std::max(first, seen.y0 / kBinBlocks);
-  const int y1 = std::min(last, (seen.y1 + kBinBlocks - 1) / kBinBlocks);
-  const int x0 = seen.x0 / kBinBlocks, x1 = (seen.x1 + kBinBlocks - 1) / kBinBlocks;
-  for (int y = y0; y < y1; ++y) {
-    for (int x = x0; x < x1; ++x) {
+  const int y0 = seen.y0 / kBinBlocks, y1 = (seen.y1 - 1) / kBinBlocks;
+  const int x0 = seen.x0 / kBinBlocks, x1 = (seen.x1 - 1) / kBinBlocks;
+  if (x0 == x1 && y0 == y1) {  // most
+    if (y0 < first || y0 >= last) return;
+    const int left = x0 * kBinBlocks, top = y0 * kBinBlocks;
+    f(static_cast<std::size_t>(y0 * columns + x0),
+      BlockBox{seen.x0 - left, seen.y0 - top, seen.x1 - left, seen.y1 - top});
+    return;
+  }
+  for (int y = std::max(first, y0); y <= std::min(last - 1, y1); ++y) {
+    for (int x = x0; x <= x1; ++x) {
       const int left = x * kBinBlocks, top = y * kBinBlocks;
       f(static_cast<std::size_t>(y * columns + x),
-        blocks_of(std::max(seen.x0 - left, 0), std::min(seen.x1 - left, kBinBlocks),
-                  std::max(seen.y0 - top, 0), std::min(seen.y1 - top, kBinBlocks)));
+        BlockBox{std::max(seen.x0 - left, 0), std::max(seen.y0 - top, 0),
+                 std::min(seen.x1 - left, kBinBlocks), std::min(seen.y1 - top, kBinBlocks)});
     }
   }
 }
@@ -74,14 +81,14 @@ TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
         for (const SeenTriangle& triangle : list) {
           for_each_square(
               triangle, bins.columns, first, last,
-              [&](std::size_t square, std::uint32_t blocks) { f(triangle, square, blocks); });
+              [&](std::size_t square, const BlockBox& blocks) { f(triangle, square, blocks); });
         }
       }
     });
   };
-  walk([&](const SeenTriangle&, std::size_t square, std::uint32_t blocks) {
+  walk([&](const SeenTriangle&, std::size_t square, const BlockBox& blocks) {
     ++bins.first[square];
-    bins.blocks[square] += static_cast<std::uint32_t>(std::popcount(blocks));
+    bins.blocks[square] += blocks.count();
   });
   std::uint64_t sum = 0;
   for (std::uint32_t& first : bins.first)
@@ -90,8 +97,8 @@ TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
     throw std::length_error("--primary raster: triangles are seen in too many squares");
   bins.triangles.resize(sum);
   std::vector<std::uint32_t> next = bins.first;
-  walk([&](const SeenTriangle& t, std::size_t square, std::uint32_t blocks) {
-    bins.triangles[next[square]++] = {t.instance, t.triangle, t.nearest, blocks};
+  walk([&](const SeenTriangle& t, std::size_t square, const BlockBox& blocks) {
+    bins.triangles[next[square]++] = {t.instance, t.triangle, t.nearest, blocks.bits()};
   });
   return bins;
 }

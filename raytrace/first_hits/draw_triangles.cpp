@@ -33,7 +33,7 @@ namespace HWY_NAMESPACE {
 struct SetUpTriangles {
   shading::Vectors16 plane[3];  // through the origin and an edge
   shading::Vectors16 normal;
-  shading::Floats16 depth, margin;
+  shading::Floats16 depth, margin[3];  // of edges: inside_margin
   shading::LaneMask firm;
 };
 
@@ -55,7 +55,7 @@ void set_up_triangles(const CornerLanes& corners, const RaySpace& space, SetUpTr
     put_lanes(exact_cross(t.edge[2], t.corner[1] + t.corner[2]), set_up.plane[2], i);
     put_lanes(t.normal, set_up.normal, i);
     put_lanes(t.depth, set_up.depth, i);
-    put_lanes(inside_margin(t, space), set_up.margin, i);
+    for (int e = 0; e < 3; ++e) put_lanes(inside_margin(t, e, space), set_up.margin[e], i);
     F deepest = set(0.0F);
     for (const F3& corner : t.corner)
       deepest = hn::Max(deepest, hn::Abs(dot(corner, set(space.forward))));
@@ -167,8 +167,10 @@ HWY_INLINE bool draw_lanes(const SetUpTriangles& t, int k, const TriangleNumbers
   put_numbers(numbers.triangle, nearer, packet.triangle + i);
   put_numbers(numbers.geometry, nearer, packet.geometry + i);
   put_numbers(numbers.instance, nearer, packet.instance + i);
-  const F inside = hn::Min(hn::Abs(e.u), hn::Min(hn::Abs(e.v), hn::Abs(e.w)));
-  const shading::LaneMask safe = bits_of(hn::Gt(inside, set(t.margin[k])), i);
+  const M inside = hn::And(hn::Gt(hn::Abs(e.u), set(t.margin[0][k])),
+                           hn::And(hn::Gt(hn::Abs(e.v), set(t.margin[1][k])),
+                                   hn::Gt(hn::Abs(e.w), set(t.margin[2][k]))));
+  const shading::LaneMask safe = bits_of(inside, i);
   block.edge = (block.edge & ~now) | (now & ~safe);
   return true;
 }

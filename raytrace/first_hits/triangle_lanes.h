@@ -35,6 +35,8 @@ using namespace shading::HWY_NAMESPACE;
 constexpr float kNoise = 0x1p-19F, kDepthNoise = 0x1p-20F;
 // Depths that may be off by more are loose: nothing is concluded from them.
 constexpr float kLooseDepth = 0x1p-14F;
+// Of |D||e|(|v1| + |v2|), v1 and v2 the ends of the edge: more than its function may be off.
+constexpr float kInside = 10 * 0x1p-24F;
 // Between these products of lengths neither under- nor overflow, and Embree leaves no corner out.
 constexpr float kTiny = 1e-25F, kHuge = 1e12F;
 
@@ -63,6 +65,7 @@ HWY_INLINE F3 exact_normal(const F3& a, const F3& b, const F3& c) {
 // Corners seen from the origin of rays, and what follows for any direction.
 struct TriangleLanes {
   F3 corner[3], edge[3], normal;
+  F edge_length[3], corner_length[3];
   F depth;              // T
   F longest, farthest;  // edge, corner
   F area;               // of the edges that the normal is made of
@@ -80,11 +83,14 @@ HWY_INLINE TriangleLanes triangles_of(const F3 position[3], const glm::vec3& ori
   t.normal = exact_normal(t.edge[0], t.edge[1], t.edge[2]);
   const F half = exact_dot(t.corner[0], t.normal);
   t.depth = half + half;
-  const F e0 = length_of(t.edge[0]), e1 = length_of(t.edge[1]), e2 = length_of(t.edge[2]);
-  t.longest = hn::Max(e0, hn::Max(e1, e2));
-  t.farthest =
-      hn::Max(length_of(t.corner[0]), hn::Max(length_of(t.corner[1]), length_of(t.corner[2])));
-  t.area = e1 * hn::Min(e0, e2);
+  for (int k = 0; k < 3; ++k) {
+    t.edge_length[k] = length_of(t.edge[k]);
+    t.corner_length[k] = length_of(t.corner[k]);
+  }
+  const auto most = [](const F x[3]) { return hn::Max(x[0], hn::Max(x[1], x[2])); };
+  t.longest = most(t.edge_length);
+  t.farthest = most(t.corner_length);
+  t.area = t.edge_length[1] * hn::Min(t.edge_length[0], t.edge_length[2]);
   return t;
 }
 
@@ -100,12 +106,13 @@ HWY_INLINE M is_firm(const TriangleLanes& t, const RaySpace& space, F deepest) {
   return hn::And(firm, hn::And(usual, near));
 }
 
-// The edge functions' least magnitude of a hit that is safely inside: with the sign of the exact
-// one the ray itself meets the triangle, and with it the boxes around it, which are tested so that
-// no rounding leaves out a ray that meets them (Ize 2013).
-HWY_INLINE F inside_margin(const TriangleLanes& t, const RaySpace& space) {
+// The least magnitude of the function of edge k at a hit that is safely inside: it has the sign of
+// the exact one, so that the ray itself meets the triangle, and with it the boxes around it, which
+// are tested so that no rounding leaves out a ray that meets them (Ize 2013).
+HWY_INLINE F inside_margin(const TriangleLanes& t, int k, const RaySpace& space) {
   const F off = set(space.off_angle) * t.farthest + set(space.off_length);
-  return set(space.longest) * t.longest * (set(kNoise) * t.farthest + set(4.0F) * off);
+  const F ends = t.corner_length[(k + 2) % 3] + t.corner_length[(k + 3) % 3];
+  return set(space.longest) * t.edge_length[k] * (set(kInside) * ends + set(4.0F) * off);
 }
 
 // The corners of up to sixteen triangles, as floats one after the other.
