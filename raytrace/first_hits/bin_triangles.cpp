@@ -95,7 +95,7 @@ TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
     sum += std::exchange(first, static_cast<std::uint32_t>(sum));
   if (sum > std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("--primary raster: triangles are seen in too many squares");
-  bins.triangles.resize(sum);
+  bins.triangles = std::make_unique_for_overwrite<BinnedTriangle[]>(sum);
   std::vector<std::uint32_t> next = bins.first;
   walk([&](const SeenTriangle& t, std::size_t square, const BlockBox& blocks) {
     bins.triangles[next[square]++] = {t.instance, t.triangle, t.nearest, blocks.bits()};

@@ -202,6 +202,10 @@ HWY_INLINE void find_beyond(DrawnSquare& square) {
   square.unlimited = 0;
 }
 
+HWY_INLINE const glm::uvec3& corners_of(const RaySpaces& scene, const BinnedTriangle& triangle) {
+  return scene.instances[triangle.instance].mesh->triangles[triangle.triangle];
+}
+
 // The triangles of a batch into their blocks, those that pass a ray first: whether they do is as
 // hard to foresee.
 void draw_batch(const RaySpaces& scene, const DrawnBatch& batch, DrawnSquare& square) {
@@ -209,9 +213,9 @@ void draw_batch(const RaySpaces& scene, const DrawnBatch& batch, DrawnSquare& sq
   const RaySpace& space = scene.of(instance);
   CornerLanes corners;
   for (int k = 0; k < batch.size; ++k) {
-    const BinnedTriangle& binned = *batch.triangle[k];
-    const GeometryInstance& its = scene.instances[binned.instance];
-    set_corners(its.positions, its.mesh->triangles[binned.triangle], k, corners);
+    const BinnedTriangle& triangle = *batch.triangle[k];
+    set_corners(scene.instances[triangle.instance].positions, corners_of(scene, triangle), k,
+                corners);
   }
   for (int k = batch.size; k < kPacketRays; ++k) clear_corners(k, corners);
   SetUpTriangles set_up;
@@ -258,6 +262,19 @@ HWY_INLINE shading::LaneMask seen_blocks(const BinnedTriangle& triangle,
   return triangle.blocks & square.drawn & ~hidden;
 }
 
+// A triangle's corners are scattered in memory, and so are their positions: each is asked for some
+// triangles ahead.
+constexpr std::size_t kCornersAhead = 40, kPositionsAhead = 20;
+
+HWY_INLINE void fetch_corners(const RaySpaces& scene, const BinnedTriangle& triangle) {
+  __builtin_prefetch(&corners_of(scene, triangle));
+}
+HWY_INLINE void fetch_positions(const RaySpaces& scene, const BinnedTriangle& triangle) {
+  const glm::uvec3& corners = corners_of(scene, triangle);
+  const glm::vec3* positions = scene.instances[triangle.instance].positions;
+  for (int c = 0; c < 3; ++c) __builtin_prefetch(positions + corners[c]);
+}
+
 void draw_triangles_of(const RaySpaces& scene, std::span<const BinnedTriangle> triangles,
                        DrawnSquare& square) {
   const std::uint32_t none = static_cast<std::uint32_t>(scene.spaces.size());
@@ -268,7 +285,11 @@ void draw_triangles_of(const RaySpaces& scene, std::span<const BinnedTriangle> t
     batch.size = 0;
     find_beyond(square);
   };
-  for (const BinnedTriangle& triangle : triangles) {
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    if (k + kCornersAhead < triangles.size()) fetch_corners(scene, triangles[k + kCornersAhead]);
+    if (k + kPositionsAhead < triangles.size())
+      fetch_positions(scene, triangles[k + kPositionsAhead]);
+    const BinnedTriangle& triangle = triangles[k];
     const shading::LaneMask blocks = seen_blocks(triangle, square);
     if (blocks == 0) continue;
     const std::uint32_t its = scene.numbers[triangle.instance];
@@ -281,11 +302,13 @@ void draw_triangles_of(const RaySpaces& scene, std::span<const BinnedTriangle> t
   if (batch.size != 0) draw_batch(scene, batch, square);
 }
 
-bool keep_certain(DrawnBlock& block) {
+int keep_certain(DrawnBlock& block) {
   RayPacket& packet = block.group->packet;
-  const shading::LaneMask active = active_lanes(block.group->active);
-  shading::LaneMask certain = 0;
+  shading::LaneMask active = 0, certain = 0;
   for (int i = 0; i < kPacketRays; i += lanes()) {
+    const IntTag d;
+    const I rays = hn::Load(d, block.group->active.ray + i);
+    active |= bits_of(hn::RebindMask(FloatTag(), hn::Ne(rays, hn::Zero(d))), i);
     const F far = load_floats(packet.far + i), second = load(block.second, i);
     const M missed = hn::Eq(far, set(std::numeric_limits<float>::infinity()));
     const F u = load_floats(packet.u + i), v = load_floats(packet.v + i);
@@ -293,12 +316,12 @@ bool keep_certain(DrawnBlock& block) {
     const M apart = hn::And(hn::Ge(second, far * set(kTie)), hn::Ge(least, set(kNearEdge)));
     certain |= bits_of(missed, i) | (bits_of(apart, i) & ~block.edge);
   }
-  if ((active & (~certain | block.unsure)) == 0) return true;
+  if ((active & (~certain | block.unsure)) == 0) return std::popcount(active);
   for (int i = 0; i < kPacketRays; ++i) {
     packet.far[i] = std::numeric_limits<float>::infinity();
     packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
   }
-  return false;
+  return 0;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -327,7 +350,7 @@ void draw_triangles(const RaySpaces& scene, std::span<const BinnedTriangle> tria
   HWY_DYNAMIC_DISPATCH(draw_triangles_of)(scene, triangles, square);
 }
 
-bool keep_certain_hits(DrawnBlock& block) { return HWY_DYNAMIC_DISPATCH(keep_certain)(block); }
+int keep_certain_hits(DrawnBlock& block) { return HWY_DYNAMIC_DISPATCH(keep_certain)(block); }
 
 }  // namespace delray::raytrace
 #endif

@@ -34,9 +34,9 @@ struct DrawnSquare {
 void draw_triangles(const RaySpaces& scene, std::span<const BinnedTriangle> triangles,
                     DrawnSquare& square);
 
-// Whether all active lanes have for certain the hit, or the miss, that Embree would find. If not,
-// all get back their miss, to be traced together: Embree may find another one of two hits at nearly
-// the same distance for a ray alone. All triangles that may be hit have been drawn.
-bool keep_certain_hits(DrawnBlock& block);
+// The number of active lanes if all have for certain the hit, or the miss, that Embree would find.
+// If not, 0, and all get back their miss, to be traced together: Embree may find another one of two
+// hits at nearly the same distance for a ray alone. All triangles that may be hit have been drawn.
+int keep_certain_hits(DrawnBlock& block);
 
 }  // namespace delray::raytrace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -40,16 +41,16 @@ inline constexpr int kSquareBlocks = kBinBlocks * kBinBlocks;
 
 // A triangle in one of the squares.
 struct BinnedTriangle {
-  std::uint32_t instance = 0, triangle = 0;
-  float nearest = 0;         // as above
-  std::uint32_t blocks = 0;  // bit kBinBlocks * y + x: it may be hit through block (x, y)
+  std::uint32_t instance, triangle;
+  float nearest;         // as above
+  std::uint32_t blocks;  // bit kBinBlocks * y + x: it may be hit through block (x, y)
 };
 
 // Triangles by squares of kBinSide pixels of the window, row by row.
 struct TriangleBins {
   int columns = 0, rows = 0;
   std::vector<std::uint32_t> first;  // one more than squares
-  std::vector<BinnedTriangle> triangles;
+  std::unique_ptr<BinnedTriangle[]> triangles;
   std::vector<std::uint32_t> blocks;  // by square: how many blocks its triangles may be seen in
 
   std::size_t square(int x, int y) const {
@@ -57,7 +58,7 @@ struct TriangleBins {
            static_cast<std::size_t>(x);
   }
   std::span<const BinnedTriangle> of(std::size_t square) const {
-    return std::span(triangles).subspan(first[square], first[square + 1] - first[square]);
+    return {triangles.get() + first[square], triangles.get() + first[square + 1]};
   }
 };
 
