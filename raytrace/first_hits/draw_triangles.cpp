@@ -55,7 +55,8 @@ void set_up_triangles(const CornerLanes& corners, const RaySpace& space, SetUpTr
     put_lanes(exact_cross(t.edge[2], t.corner[1] + t.corner[2]), set_up.plane[2], i);
     put_lanes(t.normal, set_up.normal, i);
     put_lanes(t.depth, set_up.depth, i);
-    for (int e = 0; e < 3; ++e) put_lanes(inside_margin(t, e, space), set_up.margin[e], i);
+    const F off = off_at_box(position, t, space);
+    for (int e = 0; e < 3; ++e) put_lanes(inside_margin(t, e, off, space), set_up.margin[e], i);
     F deepest = set(0.0F);
     for (const F3& corner : t.corner)
       deepest = hn::Max(deepest, hn::Abs(dot(corner, set(space.forward))));

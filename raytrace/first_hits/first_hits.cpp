@@ -231,18 +231,6 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
   const std::vector<MeshPart> parts = mesh_parts(tracer.instances);
   if (parts.empty() || window.pixels.empty()) return {nullptr, "there is nothing to draw"};
   std::unique_ptr<FirstHits> made(new FirstHits());
-  made->window_ = window.pixels;
-  made->spaces_ = ray_spaces(tracer.instances, tracer.embree.to_local(tracer.instances),
-                             window.view, window.longest);
-  for (const RaySpace& space : made->spaces_.spaces) {
-    if (!(space.forward_length > 0.0F)) return {nullptr, "an instance has no inverse transform"};
-  }
-  if (!trials.same) {
-    trials.same = finds_same_hits(tracer, made->spaces_, parts, window.view);
-  }
-  if (!trials.same) return {nullptr, "too few rays hit anything to try Embree's arithmetic"};
-  if (!*trials.same) return {nullptr, "Embree's arithmetic is not the one that is known"};
-
   const double packets = traced_packets(tracer, window) * passes;
   made->packet_seconds_ =
       always ? std::numeric_limits<double>::infinity() : traced_seconds(tracer, window);
@@ -252,6 +240,22 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
     trials.rest = kFramesToRest;
     return {nullptr, kAsFast};
   };
+  const auto pays = [&](double seconds) {
+    return always || seconds + kPacketSeconds * packets < kGain * traced;
+  };
+  if (!pays(drawn_seconds({}, parts, passes))) return rest();  // to look at them takes too long
+
+  made->window_ = window.pixels;
+  made->spaces_ = ray_spaces(tracer.embree, tracer.instances, window.view, window.longest);
+  for (const RaySpace& space : made->spaces_.spaces) {
+    if (!(space.forward_length > 0.0F)) return {nullptr, "an instance has no inverse transform"};
+  }
+  if (!trials.same) {
+    trials.same = finds_same_hits(tracer, made->spaces_, parts, window.view);
+  }
+  if (!trials.same) return {nullptr, "too few rays hit anything to try Embree's arithmetic"};
+  if (!*trials.same) return {nullptr, "Embree's arithmetic is not the one that is known"};
+
   const auto find = [&](std::span<const MeshPart> some) {
     return find_all(tracer, window, made->spaces_, some);
   };
@@ -262,13 +266,10 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
     std::vector<MeshPart> some;
     for (std::size_t i = step / 2; i < parts.size(); i += step) some.push_back(parts[i]);
     const double of_all = static_cast<double>(parts.size()) / static_cast<double>(some.size());
-    if (!(of_all * drawn_seconds(find(some), some, passes) + kPacketSeconds * packets <
-          kGain * traced))
-      return rest();
+    if (!pays(of_all * drawn_seconds(find(some), some, passes))) return rest();
   }
   std::vector<std::vector<SeenTriangle>> seen = find(parts);
-  if (!always && !(drawn_seconds(seen, parts, passes) + kPacketSeconds * packets < kGain * traced))
-    return rest();
+  if (!pays(drawn_seconds(seen, parts, passes))) return rest();
   made->bins_ = bin_triangles(std::move(seen), window.pixels);
   return {std::move(made), ""};
 }

@@ -88,15 +88,16 @@ RaySpace local_space(const GeometryInstance& instance, const glm::mat4x3& to_loc
 
 }  // namespace
 
-RaySpaces ray_spaces(std::span<const GeometryInstance> instances,
-                     std::span<const glm::mat4x3> to_local, const scenes::View& view,
-                     float longest) {
+RaySpaces ray_spaces(const EmbreeScene& tree, std::span<const GeometryInstance> instances,
+                     const scenes::View& view, float longest) {
+  const std::vector<glm::mat4x3> to_local = tree.to_local(instances);
   RaySpaces result{instances, {world_space(view, longest)}, {}};
   result.numbers.assign(instances.size(), 0);
   for (std::size_t i = 0; i < instances.size(); ++i) {
     if (!instances[i].instanced || instances[i].mesh == nullptr) continue;
     result.numbers[i] = static_cast<std::uint32_t>(result.spaces.size());
     result.spaces.push_back(local_space(instances[i], to_local[i], view, longest));
+    result.spaces.back().box = tree.local_bounds(static_cast<std::uint32_t>(i));
   }
   return result;
 }

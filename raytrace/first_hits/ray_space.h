@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "geometry/box.h"
+#include "raytrace/scene/embree_scene.h"
 #include "raytrace/scene/geometry_instance.h"
 #include "scenes/camera.h"
 
@@ -23,6 +25,7 @@ struct RaySpace {
   // How far rays here may be from those in the world, which are what boxes of instances are tested
   // with: an angle, and a length; both 0 in the world.
   float off_angle = 0.0F, off_length = 0.0F;
+  geometry::Box3 box;  // of its triangles; not of the world
 };
 
 // The spaces of a scene: the world first, then each instance that is an Embree instance.
@@ -34,10 +37,9 @@ struct RaySpaces {
   const RaySpace& of(std::uint32_t instance) const { return spaces[numbers[instance]]; }
 };
 
-// `longest`: of the directions in the world. Spaces whose transform has no inverse to speak of have
-// forward_length 0: what is in them cannot be told beforehand.
-RaySpaces ray_spaces(std::span<const GeometryInstance> instances,
-                     std::span<const glm::mat4x3> to_local, const scenes::View& view,
-                     float longest);
+// `longest`: of the directions in the world. `instances`: the tree's. Spaces whose transform has no
+// inverse to speak of have forward_length 0: what is in them cannot be told beforehand.
+RaySpaces ray_spaces(const EmbreeScene& tree, std::span<const GeometryInstance> instances,
+                     const scenes::View& view, float longest);
 
 }  // namespace delray::raytrace

@@ -106,11 +106,24 @@ HWY_INLINE M is_firm(const TriangleLanes& t, const RaySpace& space, F deepest) {
   return hn::And(firm, hn::And(usual, near));
 }
 
+// How far beside its place in the world a ray may meet triangles, where that makes a difference:
+// inside the box of their instance, by twice as far and more, the ray meets the box all the same.
+HWY_INLINE F off_at_box(const F3 position[3], const TriangleLanes& t, const RaySpace& space) {
+  const F off = set(space.off_angle) * t.farthest + set(space.off_length);
+  const F3 low = set(space.box.low), high = set(space.box.high);
+  F clearance = set(1e30F);
+  for (int k = 0; k < 3; ++k) {
+    const F3 over = position[k] - low, under = high - position[k];
+    clearance = hn::Min(clearance, hn::Min(over.x, hn::Min(over.y, over.z)));
+    clearance = hn::Min(clearance, hn::Min(under.x, hn::Min(under.y, under.z)));
+  }
+  return hn::IfThenElse(hn::Gt(clearance, set(4.0F) * off), hn::Zero(FloatTag()), off);
+}
+
 // The least magnitude of the function of edge k at a hit that is safely inside: it has the sign of
 // the exact one, so that the ray itself meets the triangle, and with it the boxes around it, which
-// are tested so that no rounding leaves out a ray that meets them (Ize 2013).
-HWY_INLINE F inside_margin(const TriangleLanes& t, int k, const RaySpace& space) {
-  const F off = set(space.off_angle) * t.farthest + set(space.off_length);
+// are tested so that no rounding leaves out a ray that meets them (Ize 2013). `off`: off_at_box.
+HWY_INLINE F inside_margin(const TriangleLanes& t, int k, F off, const RaySpace& space) {
   const F ends = t.corner_length[(k + 2) % 3] + t.corner_length[(k + 3) % 3];
   return set(space.longest) * t.edge_length[k] * (set(kInside) * ends + set(4.0F) * off);
 }

@@ -29,6 +29,12 @@ static_assert(sizeof(ShadowPacket) == sizeof(RTCRay16) &&
               offsetof(ShadowPacket, far) == offsetof(RTCRay16, tfar));
 static_assert(kMiss == RTC_INVALID_GEOMETRY_ID);
 
+geometry::Box3 bounds_of(RTCScene tree) {
+  RTCBounds box;
+  rtcGetSceneBounds(tree, &box);
+  return {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+}
+
 void start(Query& query, const EmbreeScene::State& scene, bool coherent) {
   query.scene = &scene;
 #if RTC_VERSION_MAJOR >= 4
@@ -307,10 +313,11 @@ bool EmbreeScene::is_robust() const { return state_->options.robust; }
 
 std::uint64_t EmbreeScene::memory() const { return state_->memory; }
 
-geometry::Box3 EmbreeScene::bounds() const {
-  RTCBounds box;
-  rtcGetSceneBounds(state_->top.get(), &box);
-  return {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+geometry::Box3 EmbreeScene::bounds() const { return bounds_of(state_->top.get()); }
+
+geometry::Box3 EmbreeScene::local_bounds(std::uint32_t instance) const {
+  const std::uint32_t mesh = state_->instances[instance].mesh;
+  return mesh == kMiss ? geometry::Box3() : bounds_of(state_->meshes[mesh]->tree.get());
 }
 
 const EmbreeDevice& EmbreeScene::device() const { return state_->common; }

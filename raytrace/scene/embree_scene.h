@@ -97,6 +97,9 @@ class EmbreeScene {
   // those that are no Embree instances; not a number where the transform has no inverse.
   // O(instances log instances). Throws as the constructor.
   std::vector<glm::mat4x3> to_local(std::span<const GeometryInstance> instances) const;
+  // Of what an instance's transform brings to the world, before that: what Embree makes the box
+  // of in the world. Empty where it is no Embree instance.
+  geometry::Box3 local_bounds(std::uint32_t instance) const;
 
   bool has_see_through() const { return has_see_through_; }
   bool has_splats() const { return has_splats_; }  // points or segments beside triangles

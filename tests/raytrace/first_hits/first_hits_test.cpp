@@ -226,6 +226,31 @@ TEST(FirstHits, AreThoseOfRaysFarFromTheOriginAndInAnyUnit) {
   expect_some(rasterized);
 }
 
+// Many edges, within boxes of instances and at their sides, from afar and near to them.
+TEST(FirstHits, AreThoseOfFineMeshesPlacedManyTimes) {
+  std::uint64_t rasterized = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    Random random(seed);
+    scenes::Scene scene;
+    add(scene, sphere(40));
+    scenes::Mesh box;
+    for (const float side : {-1.0F, 1.0F}) {
+      add_triangle(box, {-1, -1, side}, {1, -1, side}, {1, 1, side});
+      add_triangle(box, {-1, -1, side}, {1, 1, side}, {-1, 1, side});
+    }
+    add(scene, box, some_transform(random));
+    for (int i = 0; i < 6; ++i)
+      scene.instances.push_back({static_cast<std::uint32_t>(i % 2), some_transform(random)});
+    const glm::vec3 eye = in_cube(random, 1) * (seed % 2 == 0 ? 3.0F : 300.0F);
+    scenes::Camera camera = camera_at(eye);
+    if (seed % 2 == 1) camera.vertical_fov = 0.5F;
+    RenderOptions options = small(180, 130);
+    options.integrator = "identity";
+    rasterized += expect_same(scene, camera, options, "seed " + std::to_string(seed));
+  }
+  expect_some(rasterized);
+}
+
 // Views along axes: planes that the eye lies in, edges in step with pixels.
 TEST(FirstHits, AreThoseOfRaysInBoxesSeenStraight) {
   scenes::Scene scene;
