@@ -2,14 +2,30 @@
 #include "apps/options/input_limits.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
 
 #include "apps/launch.h"
 #include "apps/options/help.h"
 #include "apps/session.h"
 
 namespace delray::apps {
+namespace {
+
+// What is freed can be used again only within its arena of the heap, and each thread takes one of
+// its own while it may: pages of a pack that one thread reads and another drops would leave each of
+// them half empty. To be called before there are threads.
+void limit_arenas(std::uint64_t memory) {
+  constexpr std::uint64_t kMemoryPerArena = std::uint64_t{512} << 20, kMost = 1024;
+  mallopt(M_ARENA_MAX,
+          static_cast<int>(std::clamp(memory / kMemoryPerArena, std::uint64_t{1}, kMost)));
+}
+
+}  // namespace
+
 files::MemoryBudget InputLimits::budget() const {
   if (memory > 0) return files::MemoryBudget(memory);
   return files::MemoryBudget(files::MemoryBudget().limit() /
@@ -26,7 +42,7 @@ void add_memory_option(CLI::App& command, InputLimits& limits) {
           "--memory",
           [&limits](const std::string& text) {
             limits.memory = files::parse_bytes(text);
-            if (limits.memory > 0) return;
+            if (limits.memory > 0) return limit_arenas(limits.memory);
             throw CLI::ValidationError(
                 "--memory", fmt::format("'{}' is not a size such as 500MB or 2GiB", text));
           },
