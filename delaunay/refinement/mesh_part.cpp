@@ -133,6 +133,7 @@ void MeshPart::pack(std::span<const SimplexNumber> triangles, Packer& to) {
     records.push_back(record);
   }
   std::vector<ReachRecord> list;
+  list.reserve(reaches.size());
   for (const auto& [segment, reach] : reaches) list.push_back(reach);
   to.list(vertices.records()).list(list).list(records);
 }

@@ -14,7 +14,10 @@
 //
 // Points have no borders that need be the same: of them some are left out (thin_points.h).
 //
-// Degenerate: groups of which hardly anything can be left out stay as they are, and end there.
+// A group of which hardly anything can be left out goes on to the next level all the same, a few
+// times, as its pages have other neighbours and other borders there: left behind, it would lock the
+// borders of theirs, too. Degenerate: of the finest level, and of points, such groups end where
+// they are.
 #include "packs/build/levels.h"
 
 #include <algorithm>
@@ -35,6 +38,7 @@ namespace {
 
 constexpr double kWorthIt = 0.85;  // of the triangles may be left at most
 constexpr int kMostLevels = 30;
+constexpr std::uint8_t kMostFailures = 3;  // levels in turn on which a page hardly gets smaller
 constexpr std::size_t kGroupsPerThread = 4;
 // A level is measured against one so much finer at most. More take longer, as a level is then
 // measured against 2^(n - 1) times its triangles.
@@ -53,21 +57,29 @@ struct MadeGroup {
   std::vector<PageErrors> errors;  // of them, where the next level is measured against it
   std::vector<std::vector<std::byte>> lists;  // otherwise: what they stand for
   Group group;
+  std::uint8_t failures = 0;  // levels in turn, this one included, that were not worth it
 };
 
 // What is there when a level is made of the one before.
 struct Below {
   std::span<const PageRow> pages;
   std::span<const Group> groups;
-  std::uint32_t first = 0;             // page of the level before
-  std::uint32_t first_reference;       // page of the level that it is measured against
-  std::span<const PageErrors> errors;  // of the pages of that; none of the finest level
-  const ReferenceLists* lists;         // of the level before; null where that is the one
+  std::uint32_t first = 0;                 // page of the level before
+  std::uint32_t first_reference;           // page of the level that it is measured against
+  std::span<const PageErrors> errors;      // of the pages of that; none of the finest level
+  const ReferenceLists* lists;             // of the level before; null where that is the one
+  std::span<const std::uint8_t> failures;  // of the pages of the level before; none of the finest
 
   float error_of(std::uint32_t page, std::size_t triangle) const {
     if (errors.empty()) return 0;
     const float step = groups[pages[page].made_of].error / kErrorSteps;
     return static_cast<float>(errors[page - first_reference][triangle]) * step;
+  }
+  std::uint8_t failures_of(std::span<const std::uint32_t> members) const {
+    std::uint8_t fewest = kMostFailures;
+    if (failures.empty()) return fewest;
+    for (const std::uint32_t page : members) fewest = std::min(fewest, failures[page - first]);
+    return fewest;
   }
   std::vector<float> errors_of(std::span<const Reference> triangles) const {
     std::vector<float> result;
@@ -85,6 +97,10 @@ PageErrors in_steps(std::span<const float> errors, float largest) {
     result.push_back(static_cast<std::uint8_t>(std::clamp(steps + 1, 0.0F, kErrorSteps)));
   }
   return result;
+}
+
+bool is_worth_it(std::uint64_t before, std::uint64_t after) {
+  return after > 0 && static_cast<double>(after) <= kWorthIt * static_cast<double>(before);
 }
 
 // Around the pages and the bounds of the groups that they were made of.
@@ -117,8 +133,13 @@ class LevelMaker {
       make_points(members, pages, std::move(mesh), made);
       return made;
     }
-    const scenes::Mesh simplified = simplify(mesh);
-    if (!is_worth_it(mesh, simplified)) return made;
+    scenes::Mesh simplified = simplify(mesh);
+    if (!is_worth_it(mesh.triangles.size(), simplified.triangles.size())) {
+      const std::uint8_t failures = below_.failures_of(members);
+      if (failures == kMostFailures) return made;
+      made.failures = static_cast<std::uint8_t>(failures + 1);
+      if (simplified.triangles.empty()) simplified = mesh;
+    }
     const float scale = attribute_scale(mesh);
     const ReferenceSurface surface = surface_below(members, pages, std::move(mesh));
     SurfaceErrors errors = surface_errors(
@@ -136,16 +157,11 @@ class LevelMaker {
   }
 
  private:
-  static bool is_worth_it(const scenes::Mesh& before, const scenes::Mesh& after) {
-    return !after.triangles.empty() && static_cast<double>(after.triangles.size()) <=
-                                           kWorthIt * static_cast<double>(before.triangles.size());
-  }
-
   void make_points(std::span<const std::uint32_t> members, std::span<const Page> pages,
                    scenes::Mesh&& mesh, MadeGroup& made) const {
     const ReferenceSurface all = whole_pages(members, pages, std::move(mesh));
     const Simplified thinned = thin_points(all.mesh, below_.errors_of(all.triangles));
-    if (is_worth_it(all.mesh, thinned.mesh))
+    if (is_worth_it(all.mesh.triangles.size(), thinned.mesh.triangles.size()))
       finish(members, thinned.mesh, thinned.largest_error, thinned.errors, made);
   }
 
@@ -182,6 +198,7 @@ struct LastLevel {
   std::uint32_t first_reference = 0;  // page of the level that it is measured against
   std::vector<PageErrors> errors;     // of the pages of that
   std::unique_ptr<ReferenceLists> lists;
+  std::vector<std::uint8_t> failures;  // of the pages of the level
 };
 
 }  // namespace
@@ -204,9 +221,13 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
     std::vector<MadeGroup> made(std::min(wave, members.size()));
     for (std::size_t begin = 0; begin < members.size(); begin += wave) {
       const std::size_t count = std::min(wave, members.size() - begin);
-      const Below below{
-          pages,       groups,          mesh.levels.back().first, last.first_reference,
-          last.errors, last.lists.get()};
+      const Below below{pages,
+                        groups,
+                        mesh.levels.back().first,
+                        last.first_reference,
+                        last.errors,
+                        last.lists.get(),
+                        last.failures};
       const LevelMaker maker(builder, below, is_reference);
       parallel::parallel_for(0, count, 1,
                              [&](std::size_t i) { made[i] = maker.make(members[begin + i]); });
@@ -221,6 +242,7 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
           page.row.made_of = number;
           first += page.row.triangles;
         }
+        next.failures.insert(next.failures.end(), made[i].pages.size(), made[i].failures);
         std::ranges::move(made[i].errors, std::back_inserter(next.errors));
         for (const std::vector<std::byte>& list : made[i].lists) next.lists->append(list);
         builder.append(std::move(made[i].pages));

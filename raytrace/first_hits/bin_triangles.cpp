@@ -35,7 +35,8 @@ void for_each_square(const SeenTriangle& seen, int columns, int first, int last,
   if (x0 == x1 && y0 == y1) {  // most
     if (y0 < first || y0 >= last) return;
     const int left = x0 * kBinBlocks, top = y0 * kBinBlocks;
-    f(static_cast<std::size_t>(y0 * columns + x0),
+    f(static_cast<std::size_t>(y0) * static_cast<std::size_t>(columns) +
+          static_cast<std::size_t>(x0),
       BlockBox{seen.x0 - left, seen.y0 - top, seen.x1 - left, seen.y1 - top});
     return;
   }
