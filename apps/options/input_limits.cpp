@@ -15,13 +15,18 @@
 namespace delray::apps {
 namespace {
 
-// What is freed can be used again only within its arena of the heap, and each thread takes one of
-// its own while it may: pages of a pack that one thread reads and another drops would leave each of
-// them half empty. To be called before there are threads.
-void limit_arenas(std::uint64_t memory) {
+// Keeps what is resident near what is used. What is freed can be used again only within its arena
+// of the heap, and each thread takes one of its own while it may: pages of a pack that one thread
+// reads and another drops would leave each of them half empty. Large blocks, such as pictures, go
+// back to the system at once: in the heap small ones settle between them, and it grows with every
+// frame. To be called before there are threads.
+void keep_heap_small(std::uint64_t memory) {
   constexpr std::uint64_t kMemoryPerArena = std::uint64_t{512} << 20, kMost = 1024;
+  constexpr int kLarge = 4 << 20;
   mallopt(M_ARENA_MAX,
           static_cast<int>(std::clamp(memory / kMemoryPerArena, std::uint64_t{1}, kMost)));
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_TRIM_THRESHOLD, kLarge);
 }
 
 }  // namespace
@@ -42,7 +47,7 @@ void add_memory_option(CLI::App& command, InputLimits& limits) {
           "--memory",
           [&limits](const std::string& text) {
             limits.memory = files::parse_bytes(text);
-            if (limits.memory > 0) return limit_arenas(limits.memory);
+            if (limits.memory > 0) return keep_heap_small(limits.memory);
             throw CLI::ValidationError(
                 "--memory", fmt::format("'{}' is not a size such as 500MB or 2GiB", text));
           },
