@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "delaunay/quality.h"
 #include "delaunay/refine.h"
 #include "delaunay/verify.h"
+#include "tests/delaunay/hard_points.h"
 
 namespace delray::delaunay {
 
@@ -95,6 +98,34 @@ inline void expect_refined(const Outline& outline, const RefineOptions& options,
   EXPECT_EQ(below, refined.counts.excepted);
   EXPECT_EQ(refined.counts.too_fine, 0U);
   EXPECT_TRUE(below == 0 || !refined.small_corners.empty());
+}
+
+constexpr double kHardPointsAngle = 20;
+
+// `refine` reaches the angle on sets of hard points, but for those that are beyond what products of
+// coordinates allow and where pieces are too fine.
+template <class Refine>
+void expect_refined_hard_points(Refine&& refine) {
+  std::uint64_t seed = 0;
+  int reached_sets = 0;
+  for (const HardPoints& kind : hard_points()) {
+    Outline outline;
+    double largest = 0;
+    for (const glm::dvec2& p : kind.make(60, ++seed)) {
+      outline.points.positions.emplace_back(p, 0);
+      largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+    }
+    if (!(largest < 1e50 && (largest == 0 || largest > 1e-50))) continue;
+    SCOPED_TRACE(std::string(kind.name) + ", seed " + std::to_string(seed));
+    const Refined refined = refine(outline);
+    const Verdict verdict = verify_triangles(view(refined.points), refined.triangulation.vertices);
+    EXPECT_TRUE(verdict.valid && verdict.delaunay && verdict.canonical) << verdict.reason;
+    const Quality reached = quality(view(refined.points), domain_of(refined));
+    if (reached.simplices == 0 || refined.counts.too_fine + refined.counts.excepted > 0) continue;
+    EXPECT_GE(reached.min_angle, kHardPointsAngle);
+    ++reached_sets;
+  }
+  EXPECT_GT(reached_sets, 10);
 }
 
 }  // namespace delray::delaunay

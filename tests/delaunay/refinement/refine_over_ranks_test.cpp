@@ -213,27 +213,9 @@ TEST(RefineOverRanks, AnySegmentsOnALatticeAreKept) {
 }
 
 TEST(RefineOverRanks, ReachesTheAngleOnHardPoints) {
-  std::uint64_t seed = 0;
-  int reached_sets = 0;
-  for (const HardPoints& kind : hard_points()) {
-    std::vector<glm::dvec3> points;
-    double largest = 0;
-    for (const glm::dvec2& p : kind.make(60, ++seed)) {
-      points.emplace_back(p, 0);
-      largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    }
-    if (!(largest < 1e50 && (largest == 0 || largest > 1e-50))) continue;
-    SCOPED_TRACE(std::string(kind.name) + ", seed " + std::to_string(seed));
-    const Refined refined =
-        refine_simulated(3, outline_of(points), {.min_angle = 20, .max_points = 1'000'000});
-    const Verdict verdict = verify_triangles(view(refined.points), refined.triangulation.vertices);
-    EXPECT_TRUE(verdict.valid && verdict.delaunay && verdict.canonical) << verdict.reason;
-    const Quality reached = quality(view(refined.points), domain_of(refined));
-    if (reached.simplices == 0 || refined.counts.too_fine + refined.counts.excepted > 0) continue;
-    EXPECT_GE(reached.min_angle, 20);
-    ++reached_sets;
-  }
-  EXPECT_GT(reached_sets, 10);
+  expect_refined_hard_points([](const Outline& outline) {
+    return refine_simulated(3, outline, {.min_angle = kHardPointsAngle, .max_points = 1'000'000});
+  });
 }
 
 TEST(RefineOverRanks, HeightsAreThoseOfTheGivenTriangulation) {

@@ -148,6 +148,19 @@ TEST(Levels, OfAClosedSurfaceHaveNoCracks) { expect_good_levels(wavy_ball(45)); 
 
 TEST(Levels, OfATerrainKeepItsBorder) { expect_good_levels(scenes::generate("gen:terrain:10000")); }
 
+// What cannot be coarser: pages that no group was made of.
+TEST(Levels, GoOnToAFewTriangles) {
+  const tests::TemporaryFolder folder;
+  constexpr std::uint64_t kAll = 200'000;
+  write_pack(folder / "a.pack", scenes::generate("gen:terrain:" + std::to_string(kAll)));
+  const PackReader pack(folder / "a.pack");
+  std::uint64_t coarsest = 0;
+  for (const PageRow& page : pack.pages()) {
+    if (page.simplified_in == kNoGroup) coarsest += page.triangles;
+  }
+  EXPECT_LE(coarsest, kAll / 50);
+}
+
 TEST(Levels, OfTrianglesThatShareNothingEndAtOnce) {
   const tests::TemporaryFolder folder;
   scenes::Scene scene = wavy_ball(30);
