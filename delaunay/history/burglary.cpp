@@ -80,7 +80,10 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   }
   Result result = run.finish();
   if (repaired) return result;
-  if (kCounted) ++result.statistics.synchronization.rebuilds;
+  if (kCounted) {
+    ++result.statistics.synchronization.rebuilds;
+    result.statistics.synchronization.fragments = 1;  // one thread makes them all
+  }
   result.triangulation = rebuild(points, options);
   result.created_by.clear();
   return result;

@@ -109,6 +109,27 @@ TEST(CreatedBy, AreNotedForEverySimplexByEveryMethod) {
   }
 }
 
+// Flips often get stuck among few points of a sphere with many threads, and one thread starts anew.
+TEST(CreatedBy, AreOneThreadAfterARebuild) {
+  const parallel::AllowThreads allowed(8);
+  Options options;
+  options.dim = 3;
+  options.method = "burglary";
+  options.threads = 8;
+  options.created_by = true;
+  options.statistics = true;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    const PointCloud points = generate_points("sphere", 1000, 3, seed);
+    const auto [mesh, statistics, created_by] = of(points, options);
+    const Synchronization& counts = statistics.synchronization;
+    EXPECT_EQ(count_fragments(mesh, created_by, points.size()), counts.fragments)
+        << "seed " << seed;
+    if (counts.rebuilds > 0) {
+      EXPECT_EQ(counts.fragments, 1U) << "seed " << seed;
+    }
+  }
+}
+
 TEST(CreatedBy, AreNoneWithoutSimplices) {
   const PointCloud points = generate_points("uniform", 20000, 2, 3);
   PointCloud line = points;
