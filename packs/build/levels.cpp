@@ -1,8 +1,9 @@
 // Levels of detail of a surface as a hierarchy of groups: neighbouring pages are simplified
-// together with their outer border locked, and cut into pages anew; on the next level other pages
-// are neighbours (Ponchio 2008; Karis, Stubbe and Wihlidal 2021). A cut that takes, of each group,
-// all pages or all that they were made into has no cracks, since borders of groups are the same on
-// both sides.
+// together with their outer border locked, and cut into pages anew, by the cells of space that the
+// groups of the next level are in. So what is on either side of a border is in one group then, but
+// where borders of both levels cross (Cignoni and others 2005; Ponchio 2008; Karis, Stubbe and
+// Wihlidal 2021). A cut that takes, of each group, all pages or all that they were made into has no
+// cracks, since borders of groups are the same on both sides.
 //
 // A group's error is measured against the finest level, or another that is kReferenceLevels finer
 // at most: errors of one level after the other rarely add up, and sums of them would make coarser
@@ -12,12 +13,13 @@
 // those below them, so errors on the screen ascend from level to level wherever the eye is. Errors
 // of triangles are kept as a byte each, rounded up, of levels that others are measured against.
 //
-// Points have no borders that need be the same: of them some are left out (thin_points.h).
+// Points have no borders that need be the same: of them some are left out (thin_points.h), and
+// pages are full.
 //
 // A group of which hardly anything can be left out goes on to the next level all the same, a few
-// times, as its pages have other neighbours and other borders there: left behind, it would lock the
-// borders of theirs, too. Degenerate: of the finest level, and of points, such groups end where
-// they are.
+// times, as its pages have other borders there: left behind, it would lock those of their
+// neighbours, too. Degenerate: of the finest level, of points, and of a level with a single group,
+// such groups end where they are.
 #include "packs/build/levels.h"
 
 #include <algorithm>
@@ -40,12 +42,14 @@ constexpr double kWorthIt = 0.85;  // of the triangles may be left at most
 constexpr int kMostLevels = 30;
 constexpr std::uint8_t kMostFailures = 3;  // levels in turn on which a page hardly gets smaller
 constexpr std::size_t kGroupsPerThread = 4;
+constexpr double kGroupTriangles =
+    static_cast<double>(kGroupPages) * kPageClusters * kClusterTriangles;
 // A level is measured against one so much finer at most. More take longer, as a level is then
 // measured against 2^(n - 1) times its triangles.
-constexpr int kReferenceLevels = 3;
+constexpr int kReferenceLevels = 3, kPointReferenceLevels = 6;
 // Surfaces are farther apart between the places that are measured: by less than that, as exact
 // pictures show.
-constexpr float kBetweenPlaces = 1.1F;
+constexpr float kBetweenPlaces = 1.05F;
 
 // How far the triangles of a page are from the finest level, in parts of the largest of their
 // group.
@@ -53,8 +57,9 @@ using PageErrors = std::vector<std::uint8_t>;
 constexpr float kErrorSteps = 255;
 
 struct MadeGroup {
-  std::vector<EncodedPage> pages;  // none: not worth it
-  std::vector<PageErrors> errors;  // of them, where the next level is measured against it
+  std::vector<EncodedPage> pages;    // none: not worth it
+  std::vector<std::uint32_t> cells;  // of them, on the next level
+  std::vector<PageErrors> errors;    // of them, where the next level is measured against it
   std::vector<std::vector<std::byte>> lists;  // otherwise: what they stand for
   Group group;
   std::uint8_t failures = 0;  // levels in turn, this one included, that were not worth it
@@ -68,7 +73,8 @@ struct Below {
   std::uint32_t first_reference;           // page of the level that it is measured against
   std::span<const PageErrors> errors;      // of the pages of that; none of the finest level
   const ReferenceLists* lists;             // of the level before; null where that is the one
-  std::span<const std::uint8_t> failures;  // of the pages of the level before; none of the finest
+  const Cells& cells;                      // that pages are cut by for the next level
+  std::span<const std::uint8_t> failures;  // of the pages of the level before; none: none may fail
 
   float error_of(std::uint32_t page, std::size_t triangle) const {
     if (errors.empty()) return 0;
@@ -117,6 +123,20 @@ Group bounds_of(std::span<const std::uint32_t> members, std::span<const PageRow>
   return group;
 }
 
+std::span<const PageRow> rows_of(std::span<const PageRow> pages, PageRange range) {
+  return pages.subspan(range.first, range.count);
+}
+
+// By page, where it is not cut by cells.
+std::vector<std::uint32_t> cells_of_whole(std::span<const PageRow> pages, PageRange range,
+                                          int level) {
+  const Cells cells(pages, range, kGroupTriangles, level);
+  std::vector<std::uint32_t> result;
+  for (const PageRow& row : rows_of(pages, range))
+    result.push_back(cells.cell_of(row.box.centre()));
+  return result;
+}
+
 // Makes the groups of one level.
 class LevelMaker {
  public:
@@ -130,7 +150,10 @@ class LevelMaker {
     scenes::Mesh mesh = merge(pages);
     MadeGroup made;
     if (!mesh.has_triangles()) {
-      make_points(members, pages, std::move(mesh), made);
+      const ReferenceSurface all = surface_below(members, pages, scenes::Mesh(mesh));
+      ThinnedPoints thinned = thin_points(mesh, {all.mesh, below_.errors_of(all.triangles), {}});
+      if (is_worth_it(mesh.triangles.size(), thinned.mesh.triangles.size()))
+        finish(members, thinned.mesh, all, thinned.errors, made);
       return made;
     }
     scenes::Mesh simplified = simplify(mesh);
@@ -146,25 +169,11 @@ class LevelMaker {
         {surface.mesh, below_.errors_of(surface.triangles), surface.measured}, simplified, scale);
     errors.largest *= kBetweenPlaces;
     for (float& error : errors.triangles) error *= kBetweenPlaces;
-    finish(members, simplified, errors.largest, errors.triangles, made);
-    if (is_reference_ || made.pages.empty()) return made;
-    std::vector<std::uint32_t> ends;
-    std::uint32_t end = 0;
-    for (const EncodedPage& page : made.pages) ends.push_back(end += page.row.triangles);
-    for (const std::vector<Reference>& list : share_out(surface, errors, ends))
-      made.lists.push_back(encode(list));
+    finish(members, simplified, surface, errors, made);
     return made;
   }
 
  private:
-  void make_points(std::span<const std::uint32_t> members, std::span<const Page> pages,
-                   scenes::Mesh&& mesh, MadeGroup& made) const {
-    const ReferenceSurface all = whole_pages(members, pages, std::move(mesh));
-    const Simplified thinned = thin_points(all.mesh, below_.errors_of(all.triangles));
-    if (is_worth_it(all.mesh.triangles.size(), thinned.mesh.triangles.size()))
-      finish(members, thinned.mesh, thinned.largest_error, thinned.errors, made);
-  }
-
   ReferenceSurface surface_below(std::span<const std::uint32_t> members,
                                  std::span<const Page> pages, scenes::Mesh&& mesh) const {
     if (below_.lists == nullptr) return whole_pages(members, pages, std::move(mesh));
@@ -173,19 +182,30 @@ class LevelMaker {
     return surface_of(std::move(triangles), builder_.read);
   }
 
-  void finish(std::span<const std::uint32_t> members, const scenes::Mesh& mesh, float largest,
-              std::span<const float> errors, MadeGroup& made) const {
+  // Cuts pages of what is left of the group, which has these errors against the surface.
+  void finish(std::span<const std::uint32_t> members, scenes::Mesh& mesh,
+              const ReferenceSurface& surface, SurfaceErrors& errors, MadeGroup& made) const {
     made.group = bounds_of(members, below_.pages, below_.groups);
-    made.group.error = std::max(made.group.error, largest);
+    made.group.error = std::max(made.group.error, errors.largest);
     if (!std::isfinite(made.group.error)) return;
-    const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-    for (const Page& page : cut_pages(mesh, 0, count)) {
-      made.pages.push_back(encode_page(page, {}));
-      if (!is_reference_) continue;
-      const std::size_t triangles = page.mesh.triangles.size();
-      made.errors.push_back(in_steps(errors.first(triangles), made.group.error));
-      errors = errors.subspan(triangles);
+    std::vector<std::uint32_t> ends;
+    std::uint32_t end = 0;
+    for (const CellRun& run : order_by_cell(below_.cells, mesh, errors)) {
+      for (const Page& page : cut_pages(mesh, end, run.end)) {
+        const std::size_t triangles = page.mesh.triangles.size();
+        made.pages.push_back(encode_page(page, {}));
+        made.cells.push_back(run.cell);
+        if (is_reference_) {
+          made.errors.push_back(
+              in_steps(std::span(errors.triangles).subspan(end, triangles), made.group.error));
+        }
+        end += static_cast<std::uint32_t>(triangles);
+        ends.push_back(end);
+      }
     }
+    if (is_reference_) return;
+    for (const std::vector<Reference>& list : share_out(surface, errors, ends))
+      made.lists.push_back(encode(list));
   }
 
   const LevelBuilder& builder_;
@@ -199,6 +219,8 @@ struct LastLevel {
   std::vector<PageErrors> errors;     // of the pages of that
   std::unique_ptr<ReferenceLists> lists;
   std::vector<std::uint8_t> failures;  // of the pages of the level
+  std::vector<std::uint32_t> cells;    // of them
+  double triangles = 0;                // of the level
 };
 
 }  // namespace
@@ -207,12 +229,18 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
                   std::vector<Group>& groups, MeshRow& mesh) {
   const std::size_t wave = kGroupsPerThread * static_cast<std::size_t>(parallel::arena_threads());
   const bool points = mesh.shape.kind != scenes::Shape::Kind::triangle;
-  const int interval = points ? 1 : kReferenceLevels;
+  const int interval = points ? kPointReferenceLevels : kReferenceLevels;
   LastLevel last;
   last.first_reference = mesh.levels.front().first;
+  for (const PageRow& row : rows_of(pages, mesh.levels.front())) last.triangles += row.triangles;
+  last.cells = cells_of_whole(pages, mesh.levels.front(), 1);
+  double left = kKept;  // of the triangles, by a level
+  Cells cells;          // one: points have no borders
   for (int level = 1; level < kMostLevels && mesh.levels.back().count > 1; ++level) {
     const std::vector<std::vector<std::uint32_t>> members =
-        page_groups(pages, mesh.levels.back(), level);
+        page_groups(mesh.levels.back().first, last.cells);
+    if (!points) cells = Cells(pages, mesh.levels.back(), kGroupTriangles / left, level + 1);
+    const bool has_neighbours = members.size() > 1;
     const bool is_reference = level % interval == 0;
     LastLevel next;
     if (!is_reference) next.lists = std::make_unique<ReferenceLists>(builder.scratch);
@@ -227,7 +255,9 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
                         last.first_reference,
                         last.errors,
                         last.lists.get(),
-                        last.failures};
+                        cells,
+                        has_neighbours ? std::span<const std::uint8_t>(last.failures)
+                                       : std::span<const std::uint8_t>{}};
       const LevelMaker maker(builder, below, is_reference);
       parallel::parallel_for(0, count, 1,
                              [&](std::size_t i) { made[i] = maker.make(members[begin + i]); });
@@ -242,6 +272,7 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
           page.row.made_of = number;
           first += page.row.triangles;
         }
+        next.cells.insert(next.cells.end(), made[i].cells.begin(), made[i].cells.end());
         next.failures.insert(next.failures.end(), made[i].pages.size(), made[i].failures);
         std::ranges::move(made[i].errors, std::back_inserter(next.errors));
         for (const std::vector<std::byte>& list : made[i].lists) next.lists->append(list);
@@ -252,6 +283,9 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
     range.count = static_cast<std::uint32_t>(pages.size()) - range.first;
     if (range.count == 0) return;
     mesh.levels.push_back(range);
+    if (points) next.cells = cells_of_whole(pages, range, level + 1);
+    next.triangles = first;
+    left = std::min(next.triangles / last.triangles, 1.0);
     if (is_reference) {
       next.first_reference = range.first;
     } else {

@@ -1,47 +1,140 @@
-// Halves pages across the longest side of the box around their centres, until they are few: in the
-// middle on even levels, at a third and two thirds in turn on odd ones (alternate groupings:
-// Ponchio 2008).
+// A tree of planes across the longest side of the box around the centres of pages, in the middle;
+// on odd levels the first one across each axis at a third, so that no plane is near one of an even
+// level (alternate partitions: Cignoni, Ganovelli, Gobbetti, Marton, Ponchio and Scopigno, Batched
+// Multi Triangulation, 2005).
+//
+// Degenerate: pages with all centres at one place are in one cell, whatever they have; their groups
+// are cut by number.
 #include "packs/build/page_groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 namespace delray::packs::internal {
-namespace {
 
-using Numbers = std::span<std::uint32_t>;
+Cells::Cells(std::span<const PageRow> rows, PageRange pages, double triangles, int level) {
+  std::vector<std::uint32_t> numbers(pages.count);
+  std::iota(numbers.begin(), numbers.end(), pages.first);
+  cells_ = 0;
+  cut(rows, numbers, triangles, level, 0);
+}
 
-void cut(std::span<const PageRow> rows, Numbers pages, int level, int depth,
-         std::vector<std::vector<std::uint32_t>>& groups) {
-  if (pages.size() <= kGroupPages) {
-    groups.emplace_back(pages.begin(), pages.end());
-    std::sort(groups.back().begin(), groups.back().end());
-    return;
-  }
+std::uint32_t Cells::cut(std::span<const PageRow> rows, std::span<std::uint32_t> pages,
+                         double triangles, int level, unsigned cut_axes) {
   geometry::Box3 centres;
-  for (const std::uint32_t page : pages) centres.include(rows[page].box.centre());
+  double sum = 0;
+  for (const std::uint32_t page : pages) {
+    centres.include(rows[page].box.centre());
+    sum += rows[page].triangles;
+  }
+  const double count = std::round(sum / triangles);
+  if (pages.size() < 2 || count < 2) return cells_++ | kCell;
   const glm::vec3 size = centres.size();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  std::size_t first = pages.size() / 2;
-  if (level % 2 == 1) first = depth % 2 == 0 ? pages.size() / 3 : pages.size() - pages.size() / 3;
-  std::nth_element(pages.begin(), pages.begin() + static_cast<std::ptrdiff_t>(first), pages.end(),
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     const float of_a = rows[a].box.centre()[axis];
-                     const float of_b = rows[b].box.centre()[axis];
-                     return of_a < of_b || (of_a == of_b && a < b);
-                   });
-  cut(rows, pages.first(first), level, depth + 1, groups);
-  cut(rows, pages.subspan(first), level, depth + 1, groups);
+  const auto coordinate = [&](std::uint32_t page) { return rows[page].box.centre()[axis]; };
+  constexpr double kThird = 1.0 / 3.0;
+  const bool is_first = (cut_axes >> axis & 1) == 0;
+  const double wanted = level % 2 == 1 && is_first ? kThird : 0.5;
+  cut_axes |= 1U << axis;
+  // So that cells on either side can be alike.
+  const double share = std::clamp(std::round(wanted * count), 1.0, count - 1) / count;
+  auto first = static_cast<std::size_t>(share * static_cast<double>(pages.size()));
+  first = std::clamp(first, std::size_t{1}, pages.size() - 1);
+  const auto middle = pages.begin() + static_cast<std::ptrdiff_t>(first);
+  std::nth_element(pages.begin(), middle, pages.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return coordinate(a) < coordinate(b); });
+  const float at = coordinate(*middle);
+  const auto end = std::partition(pages.begin(), pages.end(),
+                                  [&](std::uint32_t page) { return coordinate(page) < at; });
+  const auto before = static_cast<std::size_t>(end - pages.begin());
+  if (before == 0) return cells_++ | kCell;
+  const auto number = static_cast<std::uint32_t>(planes_.size());
+  planes_.push_back({axis, at, 0, 0});
+  const std::uint32_t child = cut(rows, pages.first(before), triangles, level, cut_axes);
+  planes_[number].before = child;
+  const std::uint32_t other = cut(rows, pages.subspan(before), triangles, level, cut_axes);
+  planes_[number].behind = other;
+  return number;
+}
+
+std::uint32_t Cells::cell_of(const glm::vec3& place) const {
+  if (planes_.empty()) return 0;
+  std::uint32_t at = 0;
+  while ((at & kCell) == 0) {
+    const Plane& plane = planes_[at];
+    at = place[plane.axis] < plane.at ? plane.before : plane.behind;
+  }
+  return at & ~kCell;
+}
+
+namespace {
+
+// Cells that have few of the triangles leave them to the one that has most, in place of pages that
+// are nearly empty and narrow strips between borders.
+void give_small_shares(std::span<std::uint32_t> cell_of_triangle) {
+  std::unordered_map<std::uint32_t, std::uint32_t> sizes;
+  for (const std::uint32_t cell : cell_of_triangle) ++sizes[cell];
+  std::uint32_t largest = 0, most = 0;
+  for (const std::uint32_t cell : cell_of_triangle) {
+    if (const std::uint32_t size = sizes[cell]; size > most) {
+      most = size;
+      largest = cell;
+    }
+  }
+  for (std::uint32_t& cell : cell_of_triangle)
+    if (sizes[cell] < kClusterTriangles) cell = largest;
 }
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> page_groups(std::span<const PageRow> rows, PageRange pages,
-                                                    int level) {
-  std::vector<std::uint32_t> numbers(pages.count);
-  std::iota(numbers.begin(), numbers.end(), pages.first);
+std::vector<CellRun> order_by_cell(const Cells& cells, scenes::Mesh& mesh, SurfaceErrors& errors) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  std::vector<std::uint32_t> cell(count), order(count), number(count);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const glm::uvec3& v = mesh.triangles[t];
+    constexpr float kThird = 1.0F / 3.0F;
+    cell[t] = cells.cell_of(mesh.positions[v.x] * kThird + mesh.positions[v.y] * kThird +
+                            mesh.positions[v.z] * kThird);
+  }
+  give_small_shares(cell);
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return cell[a] < cell[b]; });
+  std::vector<glm::uvec3> triangles(count);
+  std::vector<float> of_triangles(count);
+  std::vector<CellRun> runs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t t = order[i];
+    number[t] = i;
+    triangles[i] = mesh.triangles[t];
+    of_triangles[i] = errors.triangles[t];
+    if (runs.empty() || runs.back().cell != cell[t]) runs.push_back({cell[t], i});
+    runs.back().end = i + 1;
+  }
+  mesh.triangles = std::move(triangles);
+  errors.triangles = std::move(of_triangles);
+  for (std::uint32_t& nearest : errors.nearest)
+    if (nearest != scenes::kNone) nearest = number[nearest];
+  for (auto& [simplified, fine] : errors.beneath) simplified = number[simplified];
+  return runs;
+}
+
+std::vector<std::vector<std::uint32_t>> page_groups(std::uint32_t first,
+                                                    std::span<const std::uint32_t> cell_of_page) {
+  constexpr std::size_t kMost = 2 * kGroupPages;
+  std::vector<std::uint32_t> pages(cell_of_page.size());
+  std::iota(pages.begin(), pages.end(), 0U);
+  std::stable_sort(pages.begin(), pages.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return cell_of_page[a] < cell_of_page[b];
+  });
   std::vector<std::vector<std::uint32_t>> groups;
-  if (!numbers.empty()) cut(rows, numbers, level, 0, groups);
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    const bool is_new = i == 0 || cell_of_page[pages[i]] != cell_of_page[pages[i - 1]];
+    if (is_new || groups.back().size() == kMost) groups.emplace_back();
+    groups.back().push_back(first + pages[i]);
+  }
   return groups;
 }
 

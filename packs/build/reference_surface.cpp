@@ -50,6 +50,28 @@ void append_triangles(const Page& page, std::span<const Reference> triangles,
   }
 }
 
+// By vertex: runs that a triangle with it was given to.
+using VertexRuns = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+// Of these only vertices of several runs, in order.
+void leave_borders(VertexRuns& runs) {
+  std::ranges::sort(runs);
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < runs.size();) {
+    std::size_t end = i;
+    while (end < runs.size() && runs[end].first == runs[i].first) ++end;
+    if (end - i > 1)
+      count =
+          static_cast<std::size_t>(std::copy(runs.begin() + static_cast<std::ptrdiff_t>(i),
+                                             runs.begin() + static_cast<std::ptrdiff_t>(end),
+                                             runs.begin() + static_cast<std::ptrdiff_t>(count)) -
+                                   runs.begin());
+    i = end;
+  }
+  runs.resize(count);
+}
+
 }  // namespace
 
 ReferenceSurface whole_pages(std::span<const std::uint32_t> pages, std::span<const Page> content,
@@ -81,19 +103,34 @@ std::vector<std::vector<Reference>> share_out(const ReferenceSurface& surface,
                                               const SurfaceErrors& errors,
                                               std::span<const std::uint32_t> ends) {
   std::vector<std::vector<Reference>> shares(ends.size());
-  const auto give = [&](std::uint32_t simplified, std::uint32_t triangle, unsigned corners) {
-    const auto run = std::ranges::upper_bound(ends, simplified) - ends.begin();
+  VertexRuns runs_of_vertex;
+  const auto give = [&](std::uint32_t run, std::uint32_t triangle, unsigned corners) {
     const Reference& whole = surface.triangles[triangle];
-    shares[static_cast<std::size_t>(run)].push_back(
-        {whole.page, whole.triangle, static_cast<std::uint8_t>(corners)});
+    shares[run].push_back({whole.page, whole.triangle, static_cast<std::uint8_t>(corners)});
+  };
+  const auto give_to_whose = [&](std::uint32_t simplified, std::uint32_t triangle,
+                                 unsigned corners) {
+    const auto run =
+        static_cast<std::uint32_t>(std::ranges::upper_bound(ends, simplified) - ends.begin());
+    give(run, triangle, corners);
+    for (int k = 0; k < 3; ++k)
+      runs_of_vertex.emplace_back(surface.mesh.triangles[triangle][k], run);
   };
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t nearest = errors.nearest[surface.mesh.triangles[t][k]];
-      if (nearest != scenes::kNone) give(nearest, t, 1U << k);
+      if (nearest != scenes::kNone) give_to_whose(nearest, t, 1U << k);
     }
   }
-  for (const auto& [simplified, triangle] : errors.beneath) give(simplified, triangle, 0);
+  for (const auto& [simplified, triangle] : errors.beneath) give_to_whose(simplified, triangle, 0);
+  leave_borders(runs_of_vertex);
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = surface.mesh.triangles[t][k];
+      auto at = std::ranges::lower_bound(runs_of_vertex, std::pair{vertex, 0U});
+      for (; at != runs_of_vertex.end() && at->first == vertex; ++at) give(at->second, t, 0);
+    }
+  }
   for (std::vector<Reference>& share : shares) join(share);
   return shares;
 }

@@ -27,9 +27,9 @@ ReferenceSurface surface_of(std::vector<Reference>&& triangles,
                             const std::function<Page(std::uint32_t page)>& read);
 
 // The references that each of several consecutive runs of a simplified mesh's triangles stands for,
-// of which `ends` has the ends: those with a corner that is nearest to one of the run, and those
-// that are nearest to a middle of it, without corners if these are all elsewhere, as beside a
-// narrow triangle.
+// of which `ends` has the ends: those with a corner that is nearest to one of the run, those that
+// are nearest to a middle of it, and, without corners, those that share a corner with them, as what
+// is beneath a narrow triangle at the border of a run may be nearest to others.
 std::vector<std::vector<Reference>> share_out(const ReferenceSurface& surface,
                                               const SurfaceErrors& errors,
                                               std::span<const std::uint32_t> ends);

@@ -11,13 +11,6 @@ namespace delray::packs::internal {
 // The pages as one mesh, in which vertices that are alike to the last bit are one.
 scenes::Mesh merge(std::span<const Page> pages);
 
-// A finer surface that is drawn from some distance on, or points.
-struct Simplified {
-  scenes::Mesh mesh;  // its vertices are some of the original
-  float largest_error = 0;
-  std::vector<float> errors;  // of its triangles
-};
-
 // About kKept of the triangles, ordered for locality. Vertices on the border, edges with a single
 // triangle, stay, and others are some of those before. The result has as many triangles as before
 // where nothing could be left out. Deterministic.

@@ -24,6 +24,7 @@ namespace delray::packs::internal {
 namespace {
 
 using Weights = glm::vec3;  // of a triangle's corners
+constexpr float kHalf = 0.5F;
 
 // Weights of the place of a triangle that is nearest to a point.
 Weights nearest_in(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
@@ -191,7 +192,7 @@ struct Sample {
 
 // Middles of edges and of triangles, each once, in the order of triangles.
 std::vector<Sample> middles_of(const scenes::Mesh& mesh) {
-  constexpr float kHalf = 0.5F, kThird = 1.0F / 3.0F;
+  constexpr float kThird = 1.0F / 3.0F;
   constexpr std::array<Weights, 3> kEdges = {
       Weights{kHalf, kHalf, 0}, {0, kHalf, kHalf}, {kHalf, 0, kHalf}};
   struct Edge {
@@ -284,7 +285,16 @@ SurfaceErrors surface_errors(const FineSurface& fine, const scenes::Mesh& simpli
   for (std::uint32_t t = 0; t < fine.mesh.triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = fine.mesh.triangles[t][k];
-      if (errors.nearest[v] != scenes::kNone) add(errors.nearest[v], before(t) + distance[v]);
+      if (errors.nearest[v] == scenes::kNone) continue;
+      add(errors.nearest[v], before(t) + distance[v]);
+      // The middle of an edge is no farther from a triangle than its ends, but may be from two.
+      const std::uint32_t w = fine.mesh.triangles[t][(k + 1) % 3];
+      if (v > w || errors.nearest[w] == scenes::kNone || errors.nearest[v] == errors.nearest[w])
+        continue;
+      Weights middle{kHalf, kHalf, kHalf};
+      middle[(k + 2) % 3] = 0;
+      const auto [nearest, far] = to_simplified({t, middle});
+      add(nearest, before(t) + far);
     }
   }
   Distances to_fine(simplified, fine.mesh, attribute_scale);

@@ -1,18 +1,22 @@
 // Fewer points in the same place.
 #pragma once
 
-#include <span>
-
 #include "packs/build/simplify.h"
+#include "packs/build/surface_error.h"
 
 namespace delray::packs::internal {
 
-// About kKept of the points, those that were far from others among them. A point that is left out
-// counts as moved to one that stays: the error of that one, and so the largest, is no less than the
-// distance and what the other was moved by `before`, one value for each point or none. Expected
-// O(n) for points on surfaces. Deterministic.
+struct ThinnedPoints {
+  scenes::Mesh mesh;     // ordered for locality
+  SurfaceErrors errors;  // by its points; `nearest`, of each of the others, the one it counts for
+};
+
+// About kKept of the points, so far from each other that what they stand for, points of a finer
+// level or all of them themselves, is near to one of them: the error of a point is no less than the
+// distance of each that counts for it, with what that was moved by before. Expected O(n) for points
+// on surfaces. Deterministic.
 //
-// REQUIRES: the mesh is of points.
-Simplified thin_points(const scenes::Mesh& mesh, std::span<const float> before = {});
+// REQUIRES: both meshes are of points, which have an error before or none has.
+ThinnedPoints thin_points(const scenes::Mesh& mesh, const FineSurface& fine);
 
 }  // namespace delray::packs::internal

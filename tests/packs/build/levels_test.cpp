@@ -158,7 +158,7 @@ TEST(Levels, GoOnToAFewTriangles) {
   for (const PageRow& page : pack.pages()) {
     if (page.simplified_in == kNoGroup) coarsest += page.triangles;
   }
-  EXPECT_LE(coarsest, kAll / 50);
+  EXPECT_LE(coarsest, kAll / 80);
 }
 
 TEST(Levels, OfTrianglesThatShareNothingEndAtOnce) {
@@ -221,10 +221,13 @@ TEST(SurfaceError, AddsWhatLiesBeneathAndLeavesOutWhatIsElsewhere) {
 TEST(Levels, AreMeasuredAgainstTheFinestOnes) {
   // Of a surface that is as rough at every scale errors would add up over levels.
   const tests::TemporaryFolder folder;
-  const scenes::Scene scene = scenes::generate("gen:terrain:40000");
+  scenes::Scene scene = scenes::generate("gen:terrain:40000");
+  const scenes::Mesh whole = joined({scene.meshes[0]});  // by position alone
+  scene.meshes[0].normals.clear();
+  scene.meshes[0].colours.clear();
+  scene.meshes[0].uvs.clear();
   write_pack(folder / "a.pack", scene);
   const PackReader pack(folder / "a.pack");
-  const scenes::Mesh whole = joined({scene.meshes[0]});
   for (const std::size_t level : {1U, 2U, 3U}) {
     const PageRange& range = pack.meshes()[0].levels[level];
     std::vector<scenes::Mesh> parts;
@@ -235,7 +238,7 @@ TEST(Levels, AreMeasuredAgainstTheFinestOnes) {
     }
     const float measured = internal::surface_error(whole, joined(parts), 0);
     EXPECT_GE(said, measured) << level;
-    EXPECT_LE(said, 1.5F * measured) << level;
+    EXPECT_LE(said, 1.25F * measured) << level;
   }
 }
 

@@ -38,28 +38,51 @@ float largest_distance(const scenes::Mesh& all, std::span<const float> before,
 TEST(ThinPoints, LeavesOutWhatIsNearToOthers) {
   for (const unsigned seed : {1U, 2U}) {
     const scenes::Mesh mesh = points_on_a_surface(1500, seed);
-    const Simplified half = thin_points(mesh);
+    const ThinnedPoints half = thin_points(mesh, {mesh});
     EXPECT_LE(half.mesh.positions.size(), 751U);
     EXPECT_GE(half.mesh.positions.size(), 500U);
-    EXPECT_LE(largest_distance(mesh, {}, half.mesh), half.largest_error);
-    EXPECT_LE(half.largest_error, 0.08F);  // spacing of a lattice: 0.05
-    ASSERT_EQ(half.errors.size(), half.mesh.triangles.size());
+    EXPECT_LE(largest_distance(mesh, {}, half.mesh), half.errors.largest);
+    EXPECT_LE(half.errors.largest, 0.08F);  // spacing of a lattice: 0.05
+    ASSERT_EQ(half.errors.triangles.size(), half.mesh.triangles.size());
     for (std::size_t i = 0; i < half.mesh.positions.size(); ++i) {  // they keep their colours
       const auto number = static_cast<std::size_t>(half.mesh.colours[i].z);
       EXPECT_EQ(half.mesh.positions[i], mesh.positions[number]);
     }
-    const Simplified quarter = thin_points(half.mesh, half.errors);
-    EXPECT_LE(largest_distance(mesh, {}, quarter.mesh), quarter.largest_error);
-    EXPECT_GE(quarter.largest_error, half.largest_error);
+    const ThinnedPoints quarter = thin_points(half.mesh, {half.mesh, half.errors.triangles});
+    EXPECT_LE(largest_distance(mesh, {}, quarter.mesh), quarter.errors.largest);
+    EXPECT_GE(quarter.errors.largest, half.errors.largest);
+    // Measured against all points, errors do not add up.
+    const ThinnedPoints of_all = thin_points(half.mesh, {mesh});
+    EXPECT_LE(largest_distance(mesh, {}, of_all.mesh), of_all.errors.largest);
+    EXPECT_LT(of_all.errors.largest, 0.9F * quarter.errors.largest);
+    EXPECT_LE(of_all.mesh.positions.size(), half.mesh.positions.size() / 2 + 1);
+  }
+}
+
+TEST(ThinPoints, KnowsWhomEachStandsFor) {
+  const scenes::Mesh mesh = points_on_a_surface(1000, 5);
+  const ThinnedPoints half = thin_points(mesh, {mesh});
+  const ThinnedPoints quarter = thin_points(half.mesh, {mesh});
+  std::vector<float> largest(quarter.mesh.positions.size(), 0);
+  ASSERT_EQ(quarter.errors.nearest.size(), mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const std::uint32_t point = quarter.errors.nearest[i];
+    ASSERT_LT(point, largest.size());
+    const float distance = glm::distance(mesh.positions[i], quarter.mesh.positions[point]);
+    largest[point] = std::max(largest[point], distance);
+  }
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    EXPECT_LE(largest[i], quarter.errors.triangles[i]);
+    EXPECT_GE(largest[i], 0.999F * quarter.errors.triangles[i]);
   }
 }
 
 TEST(ThinPoints, OfOnePlaceLeavesOne) {
   scenes::Mesh mesh = points_on_a_surface(50, 3);
   for (glm::vec3& p : mesh.positions) p = {1, 2, 3};
-  const Simplified one = thin_points(mesh);
+  const ThinnedPoints one = thin_points(mesh, {mesh});
   EXPECT_EQ(one.mesh.positions.size(), 1U);
-  EXPECT_EQ(one.largest_error, 0);
+  EXPECT_EQ(one.errors.largest, 0);
 }
 
 }  // namespace
