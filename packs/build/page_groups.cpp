@@ -45,11 +45,18 @@ std::uint32_t Cells::cut(std::span<const PageRow> rows, std::span<std::uint32_t>
   const auto middle = pages.begin() + static_cast<std::ptrdiff_t>(first);
   std::nth_element(pages.begin(), middle, pages.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return coordinate(a) < coordinate(b); });
-  const float at = coordinate(*middle);
+  // Where so many have the lowest one, the next above.
+  const float low = centres.low[axis];
+  float at = coordinate(*middle);
+  if (!(at > low)) {
+    at = centres.high[axis];
+    for (const std::uint32_t page : pages)
+      if (const float c = coordinate(page); c > low) at = std::min(at, c);
+    if (!(at > low)) return cells_++ | kCell;
+  }
   const auto end = std::partition(pages.begin(), pages.end(),
                                   [&](std::uint32_t page) { return coordinate(page) < at; });
   const auto before = static_cast<std::size_t>(end - pages.begin());
-  if (before == 0) return cells_++ | kCell;
   const auto number = static_cast<std::uint32_t>(planes_.size());
   planes_.push_back({axis, at, 0, 0});
   const std::uint32_t child = cut(rows, pages.first(before), triangles, level, cut_axes);

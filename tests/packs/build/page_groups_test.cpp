@@ -57,7 +57,7 @@ TEST(Cells, AreCutElsewhereOnTheNextLevel) {
   EXPECT_LT(cut[0], all / 20);
 }
 
-TEST(Cells, OfPagesAtOnePlaceAreOne) {
+TEST(Cells, AreFewWherePlacesAre) {
   std::vector<PageRow> rows(100);
   for (PageRow& row : rows) {
     row.triangles = kFull;
@@ -65,6 +65,9 @@ TEST(Cells, OfPagesAtOnePlaceAreOne) {
   }
   EXPECT_EQ(Cells(rows, {0, 100}, kFull, 1).count(), 1U);
   EXPECT_EQ(Cells(rows, {0, 0}, kFull, 1).count(), 1U);
+  rows[7].box = {};
+  rows[7].box.include({4, 2, 3});
+  EXPECT_EQ(Cells(rows, {0, 100}, kFull, 1).count(), 2U);
   EXPECT_EQ(Cells().cell_of({5, 5, 5}), 0U);
 }
 
