@@ -1,5 +1,5 @@
 // Sets up splats: small spots by vectors, one lane a point, pixel by pixel of the square around all
-// of them; others one by one.
+// of a vector; others one by one.
 //
 // Splats of a few pixels become fragments at once; larger ones, of which a cluster may have any
 // number, keep an entry in each tile that they touch. Cost: about a nanosecond a point and pixel of
@@ -10,6 +10,7 @@
 #include "raster/pipeline/splat_set_up.h"
 
 #include <algorithm>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/pipeline/splat_set_up.cpp"
@@ -26,13 +27,31 @@ namespace delray::raster {
 // Spots of a larger radius are set up one by one.
 inline constexpr std::int32_t kLargestSpot = 4 * kSubpixels;
 
+// Pixels that a spot may reach to each side of its own.
+constexpr std::int32_t reach_of(std::int32_t radius) {
+  return (radius + kHalfPixel - 1) >> kSubpixelBits;
+}
+
+// In subpixels, of the spots of a cluster; 0 outside of the screen.
+struct SpotRadii {
+  alignas(64) std::int32_t of[kClusterVertices + ScreenVertices::kPadding];
+  std::int32_t largest = 0;
+};
+
+// Vertices as transform() took them: positions[which[p]], or positions[p] where there is no which.
+struct SpotPlaces {
+  const glm::vec3* positions;
+  const std::uint32_t* which;
+  std::size_t count;
+};
+
 // Spots of a cluster: vertex p is at place p.
 struct SpotsToSetUp {
   const ScreenVertices& vertices;
+  const SpotRadii& radii;
   const Screen& screen;
   geometry::Rect clip;
   std::uint32_t begin, end, first_number;
-  std::int32_t radius;  // subpixels
 };
 
 }  // namespace delray::raster
@@ -43,8 +62,47 @@ namespace delray::raster {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// REQUIRES: the result has room for all pixels of the square of `reach` around each, and a vector.
-void set_up_spots(const SpotsToSetUp& spots, std::int32_t reach, SetUpResult& result) {
+// As make_splat() has them, in the same order of operations.
+void find_radii(const SplatDraw& splats, const Screen& screen, const SpotPlaces& places,
+                const ScreenVertices& vertices, SpotRadii& radii) {
+  const Floats d;
+  const Ints di;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto set = [&](float v) HWY_ATTR { return hn::Set(d, v); };
+  const glm::vec4& row = splats.to_view.row[2];
+  const bool in_perspective = !splats.in_samples && !screen.view.orthographic;
+  const auto whole = set(splats.in_samples ? splats.radius : splats.radius * screen.view.scale);
+  I largest = hn::Zero(di);
+  HWY_ALIGN float p[3][kMostLanes];
+  for (std::size_t i = 0; i < places.count; i += lanes) {
+    auto radius = whole;
+    if (in_perspective) {
+      for (std::size_t k = 0; k < lanes; ++k) {
+        const std::size_t vertex = std::min(i + k, places.count - 1);
+        const glm::vec3& at =
+            places.positions[places.which == nullptr ? vertex : places.which[vertex]];
+        p[0][k] = at.x, p[1][k] = at.y, p[2][k] = at.z;
+      }
+      const auto xy =
+          hn::Add(hn::Mul(set(row.x), hn::Load(d, p[0])), hn::Mul(set(row.y), hn::Load(d, p[1])));
+      const auto z = hn::Add(hn::Add(xy, hn::Mul(set(row.z), hn::Load(d, p[2]))), set(row.w));
+      radius = hn::Mul(set(splats.radius), hn::Div(set(screen.view.scale), z));
+    }
+    const auto inside = hn::Ne(hn::Load(di, vertices.x + i), hn::Set(di, kOutside));
+    const auto in_subpixels = hn::NearestInt(
+        hn::Mul(hn::Min(radius, set(kLargestSplat)), set(static_cast<float>(kSubpixels))));
+    const I result = hn::IfThenElseZero(inside, in_subpixels);
+    largest = hn::Max(largest, result);
+    hn::Store(result, di, radii.of + i);
+  }
+  radii.largest = hn::GetLane(hn::MaxOfLanes(di, largest));
+}
+
+// Returns how many spots have pixels.
+//
+// REQUIRES: the result has room for all pixels of the square of the largest reach around each, and
+// a vector.
+std::uint32_t set_up_spots(const SpotsToSetUp& spots, SetUpResult& result) {
   const Ints d;
   const hn::RebindToUnsigned<Ints> du;
   const std::size_t lanes = hn::Lanes(d);
@@ -53,7 +111,7 @@ void set_up_spots(const SpotsToSetUp& spots, std::int32_t reach, SetUpResult& re
   const I tiles_x = hn::Set(d, spots.screen.tiles_x), in_tile = hn::Set(d, kTileSize - 1);
   const I x0 = hn::Set(d, spots.clip.x0), width = hn::Set(d, spots.clip.width());
   const I y0 = hn::Set(d, spots.clip.y0), height = hn::Set(d, spots.clip.height());
-  const I squared = hn::Set(d, spots.radius * spots.radius);
+  std::size_t shown = 0;
   std::size_t size = result.fragments;
   for (std::size_t place = spots.begin; place < spots.end; place += lanes) {
     const I x = hn::LoadU(d, spots.vertices.x + place), y = hn::LoadU(d, spots.vertices.y + place);
@@ -62,6 +120,10 @@ void set_up_spots(const SpotsToSetUp& spots, std::int32_t reach, SetUpResult& re
     const I number =
         hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(spots.first_number + place)));
     const Mask used = hn::And(hn::FirstN(d, spots.end - place), hn::Ne(x, hn::Set(d, kOutside)));
+    const I radius = hn::IfThenElseZero(used, hn::LoadU(d, spots.radii.of + place));
+    const I squared = hn::Mul(radius, radius);
+    const std::int32_t reach = reach_of(hn::GetLane(hn::MaxOfLanes(d, radius)));
+    Mask any = hn::Ne(x, x);
     const I own_x = hn::ShiftRight<kSubpixelBits>(x), own_y = hn::ShiftRight<kSubpixelBits>(y);
     for (std::int32_t j = -reach; j <= reach; ++j) {
       const I row = hn::Add(own_y, hn::Set(d, j));
@@ -90,10 +152,13 @@ void set_up_spots(const SpotsToSetUp& spots, std::int32_t reach, SetUpResult& re
         append(hn::BitCast(du, hn::Not(depth)), mask, result.code.data() + size);
         append(hn::BitCast(du, number), mask, result.number.data() + size);
         size += hn::CountTrue(d, covered);
+        any = hn::Or(any, covered);
       }
     }
+    shown += hn::CountTrue(d, any);
   }
   result.fragments = size;
+  return static_cast<std::uint32_t>(shown);
 }
 static_assert(kTileSize == 1 << 6 && kTilePixels == 1 << 12);
 
@@ -105,6 +170,7 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raster {
 namespace {
 
+HWY_EXPORT(find_radii);
 HWY_EXPORT(set_up_spots);
 
 // Splats of at most so many pixels in their box become fragments.
@@ -161,35 +227,36 @@ void append_splat(const ClusterToSetUp& cluster, const Splat& splat, SetUpResult
 void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetUpResult& result) {
   const auto& [screen, draw, block, mesh_cluster, unused] = cluster.on_screen;
   const SplatDraw& splats = draw.splats;
-  const auto radius = static_cast<std::int32_t>(std::nearbyint(splats.radius * kSubpixels));
-  const bool by_vectors = splats.is_spot() && splats.in_samples && radius <= kLargestSpot &&
-                          mesh_cluster.vertices == mesh_cluster.count;
-  if (!by_vectors) {
+  const scenes::Mesh& mesh = *draw.draw->mesh;
+  SpotRadii radii;
+  radii.largest = std::numeric_limits<std::int32_t>::max();
+  if (splats.is_spot() && mesh_cluster.vertices == mesh_cluster.count) {
+    // A vertex at each place: primitives are numbered by vertices as these are first used.
+    const std::span<const std::uint32_t> which = block.vertices_of(mesh_cluster);
+    SpotPlaces places{mesh.positions.data(), which.data(), which.size()};
+    if (mesh_cluster.consecutive) {
+      places = {mesh.positions.data() + which[0], nullptr, which.size()};
+      transform(splats.to_view, screen, std::span(places.positions, places.count), vertices);
+    } else {
+      transform(splats.to_view, screen, mesh.positions, which, vertices);
+    }
+    HWY_DYNAMIC_DISPATCH(find_radii)(splats, screen, places, vertices, radii);
+  }
+  if (radii.largest > kLargestSpot) {
     for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
       append_splat(cluster,
-                   make_splat(screen, splats, *draw.draw->mesh, mesh_cluster.first + place,
+                   make_splat(screen, splats, mesh, mesh_cluster.first + place,
                               cluster.first_number + place),
                    result);
     }
     return;
   }
-  // A vertex at each place: primitives are numbered by vertices as these are first used.
-  const std::span<const std::uint32_t> which = block.vertices_of(mesh_cluster);
-  const std::vector<glm::vec3>& positions = draw.draw->mesh->positions;
-  if (mesh_cluster.consecutive)
-    transform(splats.to_view, screen, std::span(positions).subspan(which[0], which.size()),
-              vertices);
-  else
-    transform(splats.to_view, screen, positions, which, vertices);
-  const std::int32_t reach = (radius + kHalfPixel - 1) >> kSubpixelBits;
-  const auto side = static_cast<std::size_t>(2 * reach + 1);
+  const auto side = static_cast<std::size_t>(2 * reach_of(radii.largest) + 1);
   const std::size_t count = cluster.end - cluster.begin;
   reserve_fragments((count + kMostLanes) * side * side + kMostLanes, result);
-  const std::size_t before = result.fragments;
-  HWY_DYNAMIC_DISPATCH(set_up_spots)
-  ({vertices, screen, cluster.clip, cluster.begin, cluster.end, cluster.first_number, radius},
-   reach, result);
-  const std::uint64_t shown = std::min<std::uint64_t>(count, result.fragments - before);
+  const std::uint32_t shown = HWY_DYNAMIC_DISPATCH(set_up_spots)(
+      {vertices, radii, screen, cluster.clip, cluster.begin, cluster.end, cluster.first_number},
+      result);
   result.counts.in += count;
   result.counts.rasterized += shown;
   result.counts.culled += count - shown;

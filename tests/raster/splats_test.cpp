@@ -245,8 +245,10 @@ TEST(Splats, OddOnesDoNoHarm) {
 }
 
 // Small spots are set up by vectors, and those of the same picture one by one.
+// Radii in samples, and in the world's units, of which some are too large for vectors.
 TEST(Splats, AreTheSameByVectorsAndOneByOne) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const bool in_samples = seed <= 6;
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> both(-1, 1);
     std::vector<glm::vec3> at;
@@ -255,8 +257,9 @@ TEST(Splats, AreTheSameByVectorsAndOneByOne) {
       at.emplace_back(1.5F * both(random), 1.5F * both(random), -1 - both(random));
       colours.emplace_back(both(random), both(random), both(random), 1);
     }
-    const float radius = 0.7F * static_cast<float>(seed) - 0.4F;
-    scenes::Scene scene = plain_points(at, {Kind::point, true, radius}, colours);
+    const float radius = in_samples ? 0.7F * static_cast<float>(seed) - 0.4F
+                                    : 0.002F * static_cast<float>((seed - 6) * (seed - 6));
+    scenes::Scene scene = plain_points(at, {Kind::point, in_samples, radius}, colours);
     const Picture expected = picture_of(scene, camera_at_origin(), small_picture(201, 140));
     // Points that share vertices, and none in their order.
     scenes::Mesh& mesh = scene.meshes[0];
