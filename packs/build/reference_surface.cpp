@@ -57,19 +57,13 @@ using VertexRuns = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 void leave_borders(VertexRuns& runs) {
   std::ranges::sort(runs);
   runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < runs.size();) {
-    std::size_t end = i;
-    while (end < runs.size() && runs[end].first == runs[i].first) ++end;
-    if (end - i > 1)
-      count =
-          static_cast<std::size_t>(std::copy(runs.begin() + static_cast<std::ptrdiff_t>(i),
-                                             runs.begin() + static_cast<std::ptrdiff_t>(end),
-                                             runs.begin() + static_cast<std::ptrdiff_t>(count)) -
-                                   runs.begin());
-    i = end;
+  VertexRuns left;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool as_before = i > 0 && runs[i - 1].first == runs[i].first;
+    const bool as_next = i + 1 < runs.size() && runs[i + 1].first == runs[i].first;
+    if (as_before || as_next) left.push_back(runs[i]);
   }
-  runs.resize(count);
+  runs = std::move(left);
 }
 
 }  // namespace

@@ -251,7 +251,7 @@ void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetU
     }
     return;
   }
-  const auto side = static_cast<std::size_t>(2 * reach_of(radii.largest) + 1);
+  const std::size_t side = 2 * static_cast<std::size_t>(reach_of(radii.largest)) + 1;
   const std::size_t count = cluster.end - cluster.begin;
   reserve_fragments((count + kMostLanes) * side * side + kMostLanes, result);
   const std::uint32_t shown = HWY_DYNAMIC_DISPATCH(set_up_spots)(
