@@ -1,7 +1,9 @@
 // Entries in a table, their uses in a list, and a queue that threads take pages from.
 //
 // A page is in one of three states: waiting in the queue, being made by one thread, or there.
-// Whoever needs one that waits makes it himself rather than wait for a thread to come to it.
+// Whoever needs one that waits makes it himself rather than wait for a thread to come to it, and
+// while another makes it he makes the next ones in the queue: threads that sleep and wake for every
+// page cost as much as reading it. Pages are dropped outside of the lock, as that takes long, too.
 //
 // Degenerate: where more is held than the limit allows nothing is dropped until it is given back; a
 // page that cannot be made is forgotten, so that who asks next tries again.
@@ -71,7 +73,7 @@ std::shared_ptr<const CachedPage> PageCache::get(std::uint32_t page) {
       uses_.splice(uses_.end(), uses_, entry->second.use);
       return entry->second.page;
     }
-    made_.wait(lock);
+    if (!make_next(lock)) made_.wait(lock);
   }
 }
 
@@ -102,9 +104,10 @@ void PageCache::cancel() {
 }
 
 void PageCache::set_limit(std::uint64_t limit) {
+  Dropped dropped;  // after the lock
   const std::lock_guard lock(mutex_);
   limit_ = limit;
-  drop_unused();
+  dropped = drop_unused();
 }
 
 CacheCounts PageCache::counts() const {
@@ -121,6 +124,13 @@ void PageCache::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   for (;;) {
     if (!queued_.wait(lock, stop, [this] { return !queue_.empty(); })) return;
+    make_next(lock);
+  }
+}
+
+// The first page that waits in the queue; false: none does.
+bool PageCache::make_next(std::unique_lock<std::mutex>& lock) {
+  while (!queue_.empty()) {
     const std::uint32_t page = queue_.front();
     queue_.pop_front();
     const auto entry = entries_.find(page);
@@ -128,9 +138,10 @@ void PageCache::run(const std::stop_token& stop) {
     try {
       make(page, lock);
     } catch (...) {  // who gets it makes it again, and is told
-      continue;
     }
+    return true;
   }
+  return false;
 }
 
 // With the lock, which it gives up meanwhile.
@@ -154,12 +165,18 @@ std::shared_ptr<const CachedPage> PageCache::make(std::uint32_t page,
   bytes_ += made->bytes();
   ++counts_.pages_read;
   counts_.bytes_read += bytes_of_(page);
-  drop_unused();
+  Dropped dropped = drop_unused();
   made_.notify_all();
+  if (!dropped.empty()) {
+    lock.unlock();
+    dropped = {};
+    lock.lock();
+  }
   return made;
 }
 
-void PageCache::drop_unused() {
+PageCache::Dropped PageCache::drop_unused() {
+  Dropped dropped;
   for (auto use = uses_.begin(); bytes_ > limit_ && use != uses_.end();) {
     const auto entry = entries_.find(*use);
     if (entry->second.page.use_count() > 1) {
@@ -167,9 +184,11 @@ void PageCache::drop_unused() {
       continue;
     }
     bytes_ -= entry->second.page->bytes();
+    dropped.push_back(std::move(entry->second.page));
     entries_.erase(entry);
     use = uses_.erase(use);
   }
+  return dropped;
 }
 
 }  // namespace delray::packs

@@ -72,7 +72,10 @@ class PageCache {
 
   void run(const std::stop_token& stop);
   std::shared_ptr<const CachedPage> make(std::uint32_t page, std::unique_lock<std::mutex>& lock);
-  void drop_unused();
+  bool make_next(std::unique_lock<std::mutex>& lock);
+  // What does not fit the limit, and nobody holds.
+  using Dropped = std::vector<std::shared_ptr<const CachedPage>>;
+  Dropped drop_unused();
 
   const Make make_;
   const BytesOf bytes_of_;
