@@ -73,6 +73,11 @@ TEST(PageCache, KeepsWhatIsHeldAndNothingElseWithoutMemory) {
   EXPECT_EQ(numbers.cache.bytes(), 0U);
 }
 
+class Empty final : public CachedPage {
+ public:
+  std::uint64_t bytes() const override { return 1; }
+};
+
 TEST(PageCache, ReadsAheadAndTellsFailuresToWhoAsks) {
   Numbers numbers(1000, 2);
   const std::uint32_t pages[] = {5, 6, 2000, 7};
@@ -83,6 +88,28 @@ TEST(PageCache, ReadsAheadAndTellsFailuresToWhoAsks) {
   EXPECT_THROW(numbers.get(2000), std::runtime_error);
   EXPECT_THROW(numbers.get(2000), std::runtime_error);
   EXPECT_EQ(numbers.get(8), 8U);
+}
+
+// The one thread that reads ahead makes a page for as long as the others are not made.
+TEST(PageCache, WhoWaitsMakesWhatComesNext) {
+  std::atomic<int> begun{0}, others{0};
+  PageCache cache(
+      [&](std::uint32_t page) -> std::shared_ptr<const CachedPage> {
+        ++begun;
+        if (page == 1) {
+          while (others < 2) std::this_thread::yield();
+        } else {
+          ++others;
+        }
+        return std::make_shared<Empty>();
+      },
+      [](std::uint32_t) { return 0; }, 100, 1);
+  const std::uint32_t pages[] = {1, 2, 3};
+  cache.prefetch(std::span(pages).first(1));
+  while (begun < 1) std::this_thread::yield();
+  cache.prefetch(pages);
+  EXPECT_NE(cache.get(1), nullptr);
+  EXPECT_EQ(begun, 3);
 }
 
 TEST(PageCache, ManyThreadsGetWhatTheyAskFor) {
