@@ -1,7 +1,7 @@
 // A set of points near to all others: of those that none is near to, far ones first, the nearest
 // point is taken (as by dart throwing, Cook 1986). The radius that leaves as many as wanted is
-// found by bisection; a hash grid finds who is near: of cells twice as wide eight have all that is
-// within a radius.
+// searched for in an interval; a hash grid finds who is near: of cells twice as wide eight have all
+// that is within a radius.
 //
 // Degenerate: points at one place are one; where all are, one is left.
 #include "packs/build/thin_points.h"
@@ -94,7 +94,7 @@ class Thinning {
     find_nearest();
   }
 
-  // No error is above the radius where that is no less than least_radius().
+  // No error is above the radius, but for rounding, where that is no less than least_radius_.
   Chosen choose(float radius) const {
     Chosen chosen;
     chosen.errors.assign(places_.size(), -1);

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "comm/threads.h"
+#include "packs/build/surface_error.h"
 #include "packs/pack_writer.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
@@ -27,20 +28,22 @@ Result of_pack(const packs::PackReader& pack, const scenes::Camera& camera,
   return result;
 }
 
+std::size_t pixel_index(const image::Image8& picture, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+         static_cast<std::size_t>(x);
+}
+
 // Pixels that are not, within a pixel, at a depth that the other picture has so many pixels around.
 std::size_t displaced(const image::Image8& a, const image::Image8& b, const scenes::View& view,
                       int around) {
   std::size_t count = 0;
   for (int y = around; y + around < a.height; ++y) {
     for (int x = around; x + around < a.width; ++x) {
-      const float depth = a.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
-                                  static_cast<std::size_t>(x)];
+      const float depth = a.depth[pixel_index(a, x, y)];
       float low = image::kEmptyDepth, high = 0;
       for (int j = y - around; j <= y + around; ++j) {
         for (int i = x - around; i <= x + around; ++i) {
-          const float other =
-              b.depth[static_cast<std::size_t>(j) * static_cast<std::size_t>(b.width) +
-                      static_cast<std::size_t>(i)];
+          const float other = b.depth[pixel_index(b, i, j)];
           low = std::min(low, other);
           high = std::max(high, other);
         }
@@ -54,6 +57,55 @@ std::size_t displaced(const image::Image8& a, const image::Image8& b, const scen
     }
   }
   return count;
+}
+
+// Of a point from the segment between two others.
+float distance_to_segment(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b) {
+  const glm::vec3 way = b - a;
+  const float length = glm::dot(way, way);
+  const float t = length > 0 ? std::clamp(glm::dot(p - a, way) / length, 0.0F, 1.0F) : 0.0F;
+  return glm::distance(p, a + way * t);
+}
+
+float distance_to_triangle(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
+                           const glm::vec3& c) {
+  const glm::vec3 normal = glm::cross(b - a, c - a);
+  const bool above = glm::dot(glm::cross(b - a, p - a), normal) >= 0 &&
+                     glm::dot(glm::cross(c - b, p - b), normal) >= 0 &&
+                     glm::dot(glm::cross(a - c, p - c), normal) >= 0;
+  if (above && glm::length(normal) > 0)
+    return std::abs(glm::dot(p - a, normal)) / glm::length(normal);
+  return std::min(
+      {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+}
+
+// How far what a picture shows is from a mesh at most, in pixels.
+float farthest_in_pixels(const image::Image8& picture, const scenes::View& view,
+                         const scenes::Mesh& mesh) {
+  scenes::Mesh surface, places;  // without attributes; of triangles that are points
+  surface.positions = mesh.positions;
+  surface.triangles = mesh.triangles;
+  std::vector<float> pixel;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const float depth = picture.depth[pixel_index(picture, x, y)];
+      if (depth == image::kEmptyDepth) continue;
+      const glm::vec3 ray = view.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+      places.triangles.emplace_back(static_cast<std::uint32_t>(places.positions.size()));
+      places.positions.push_back(view.eye + ray * depth);
+      pixel.push_back(depth / view.scale);
+    }
+  }
+  const std::vector<std::uint32_t> nearest =
+      packs::internal::surface_errors({places}, surface, 0).nearest;
+  float farthest = 0;
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const glm::uvec3& t = mesh.triangles[nearest[i]];
+    const float distance = distance_to_triangle(places.positions[i], mesh.positions[t.x],
+                                                mesh.positions[t.y], mesh.positions[t.z]);
+    farthest = std::max(farthest, distance / pixel[i]);
+  }
+  return farthest;
 }
 
 TEST(PackedError, MovesNothingByMoreThanAPixel) {
@@ -76,6 +128,8 @@ TEST(PackedError, MovesNothingByMoreThanAPixel) {
     EXPECT_GT(coarse.statistics.pack->levels[1] + coarse.statistics.pack->levels[2], 0U);
     const auto& a = std::get<image::Image8>(exact.picture);
     const auto& b = std::get<image::Image8>(coarse.picture);
+    EXPECT_LE(farthest_in_pixels(a, view, scene.meshes[0]), 0.01F) << turn;
+    EXPECT_LE(farthest_in_pixels(b, view, scene.meshes[0]), 1) << turn;
     // What is a pixel away at most may lie between pixels that are one and two away.
     for (const auto& [of, beside] : {std::pair(&a, &b), std::pair(&b, &a)}) {
       EXPECT_LE(displaced(*of, *beside, view, 1), 3U) << turn;
