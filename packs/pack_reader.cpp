@@ -4,11 +4,13 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "files/error.h"
@@ -151,17 +153,46 @@ void PackReader::read_bytes(std::uint64_t begin, std::span<char> bytes) const {
   }
 }
 
+double PackReader::read_and_time(std::uint64_t begin, std::span<char> bytes) const {
+  const iovec where{bytes.data(), bytes.size()};
+  const ssize_t got = ::preadv2(descriptor_, &where, 1, static_cast<off_t>(begin), RWF_NOWAIT);
+  const std::size_t read = got > 0 ? static_cast<std::size_t>(got) : 0;
+  if (read == bytes.size()) return 0;
+  const bool waits = got > 0 || errno == EAGAIN;
+  const auto start = std::chrono::steady_clock::now();
+  read_bytes(begin + read, bytes.subspan(read));
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  return waits ? seconds.count() : 0;
+}
+
 Page PackReader::read(std::uint32_t page) const {
+  Page result;
+  read(page, result);
+  return result;
+}
+
+double PackReader::read(std::uint32_t page, Page& into) const {
   const PageRow& row = pages_[page];
   thread_local std::vector<char> bytes;
   bytes.resize(row.bytes);
-  read_bytes(row.offset, bytes);
+  const double waited = read_and_time(row.offset, bytes);
   const std::string place = "page " + std::to_string(page);
   if (XXH3_64bits(bytes.data(), bytes.size()) != row.checksum) {
     throw FileError(Cause::input, name_, place + ", byte " + std::to_string(row.offset),
                     "the pack is damaged: the page has another checksum");
   }
-  return internal::decode(bytes, row, meshes_[mesh_of(page)], name_, place);
+  internal::decode(bytes, row, meshes_[mesh_of(page)], name_, place, into);
+  return waited;
+}
+
+void PackReader::will_need(std::span<const std::uint32_t> pages) const {
+  for (std::size_t i = 0; i < pages.size();) {
+    const std::uint64_t begin = pages_[pages[i]].offset;
+    std::uint64_t end = begin;
+    for (; i < pages.size() && pages_[pages[i]].offset == end; ++i) end += pages_[pages[i]].bytes;
+    ::posix_fadvise(descriptor_, static_cast<off_t>(begin), static_cast<off_t>(end - begin),
+                    POSIX_FADV_WILLNEED);
+  }
 }
 
 }  // namespace delray::packs

@@ -47,10 +47,16 @@ class PackReader {
   // A page, checked. Throws FileError: (input) where its checksum is another or it is none,
   // (device) where the disk cannot be read. O(its bytes).
   Page read(std::uint32_t page) const;
+  // Into `into`, whose memory is used again. Returns for how many seconds the disk was waited for;
+  // 0: what was read was in the system's memory, or the system does not tell.
+  double read(std::uint32_t page, Page& into) const;
+  // Has the system read these pages into its memory; does not wait for it.
+  void will_need(std::span<const std::uint32_t> pages) const;
 
  private:
   void open(std::uint64_t bytes, const files::MemoryBudget& memory);
   void read_bytes(std::uint64_t begin, std::span<char> bytes) const;
+  double read_and_time(std::uint64_t begin, std::span<char> bytes) const;
 
   std::string name_;
   int descriptor_ = -1;

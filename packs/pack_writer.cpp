@@ -79,7 +79,9 @@ struct PackWriter::State {
     const PageRow& row = table.pages[number];
     std::vector<char> bytes(row.bytes);
     file.read_back(row.offset, bytes);
-    return internal::decode(bytes, row, mesh, "", "page " + std::to_string(number));
+    Page page;
+    internal::decode(bytes, row, mesh, "", "page " + std::to_string(number), page);
+    return page;
   }
   internal::Section section(std::span<const char> bytes) {
     const internal::Section result{written, bytes.size(), XXH3_64bits(bytes.data(), bytes.size())};

@@ -1,23 +1,24 @@
-// Entries in a table, their uses in a list, and a queue that threads take pages from.
+// An entry for each page, those of pages that are there in a list, under one lock, which nobody has
+// while he makes or frees a page.
 //
-// A page is in one of three states: waiting in the queue, being made by one thread, or there.
-// Whoever needs one that waits makes it himself rather than wait for a thread to come to it, and
-// while another makes it he makes the next ones in the queue: threads that sleep and wake for every
-// page cost as much as reading it. Pages are dropped outside of the lock, as that takes long, too.
+// Who needs a page makes it, and there are no threads for it: what is read by one thread and drawn
+// by another goes through memory in between, and threads that sleep and wake for every page cost as
+// much as reading it. The disk is kept busy by the system, which is told what will be needed. The
+// memory of pages that go is used for those that come: a page takes a dozen blocks of the heap, and
+// to free what other threads have allocated costs more than to unpack it.
 //
 // Degenerate: where more is held than the limit allows nothing is dropped until it is given back; a
 // page that cannot be made is forgotten, so that who asks next tries again.
 #include "packs/page_cache.h"
 
-#include <algorithm>
 #include <chrono>
 
 namespace delray::packs {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
+constexpr std::size_t kSpares = 16;  // about as many as there are threads that make pages
+// So many of the pages that were used last are looked at for one that nobody holds any more.
+constexpr std::size_t kMostHeld = 64;
 
 }  // namespace
 
@@ -39,72 +40,36 @@ void CacheCounts::operator+=(const CacheCounts& other) {
   bytes_read += other.bytes_read;
 }
 
-PageCache::PageCache(Make make, BytesOf bytes_of, std::uint64_t limit, int threads)
-    : make_(std::move(make)), bytes_of_(std::move(bytes_of)), limit_(limit) {
-  for (int i = 0; i < threads; ++i)
-    threads_.emplace_back([this](const std::stop_token& stop) { run(stop); });
-}
-
-PageCache::~PageCache() {
-  cancel();
-  for (std::jthread& thread : threads_) thread.request_stop();
-}
+PageCache::PageCache(std::uint32_t pages, Make make, BytesOf bytes_of, std::uint64_t limit)
+    : make_(std::move(make)), bytes_of_(std::move(bytes_of)), entries_(pages), limit_(limit) {}
 
 std::shared_ptr<const CachedPage> PageCache::get(std::uint32_t page) {
   std::unique_lock lock(mutex_);
-  const auto found = entries_.find(page);
-  if (found != entries_.end() && found->second.page != nullptr) {
-    ++counts_.hits;
-    uses_.splice(uses_.end(), uses_, found->second.use);
-    return found->second.page;
-  }
-  ++counts_.misses;
-  ++counts_.stalls;
-  const auto begin = std::chrono::steady_clock::now();
-  for (;;) {
-    const auto entry = entries_.find(page);
-    if (entry == entries_.end() || entry->second.waiting) {
-      std::shared_ptr<const CachedPage> made = make(page, lock);
-      counts_.stall_seconds += seconds_since(begin);
-      return made;
-    }
-    if (entry->second.page != nullptr) {
-      counts_.stall_seconds += seconds_since(begin);
-      uses_.splice(uses_.end(), uses_, entry->second.use);
-      return entry->second.page;
-    }
-    if (!make_next(lock)) made_.wait(lock);
-  }
+  Entry& entry = entries_[page];
+  ++(entry.page != nullptr ? counts_.hits : counts_.misses);
+  // If he who makes it cannot, somebody else may try.
+  while (entry.being_made) made_.wait(lock);
+  if (entry.page == nullptr) return make(page, lock);
+  take_out(entry);
+  append(page);
+  return entry.page;
 }
 
-void PageCache::prefetch(std::span<const std::uint32_t> pages) {
-  if (threads_.empty()) return;
+std::vector<std::uint32_t> PageCache::missing(std::span<const std::uint32_t> pages) const {
+  std::vector<std::uint32_t> result;
   const std::lock_guard lock(mutex_);
-  std::size_t fresh = 0;
-  for (const std::uint32_t page : pages) {
-    const auto [entry, is_new] = entries_.try_emplace(page);
-    if (!is_new) continue;
-    entry->second.waiting = true;
-    queue_.push_back(page);
-    ++fresh;
-  }
-  if (fresh == 1)
-    queued_.notify_one();
-  else if (fresh > 1)
-    queued_.notify_all();
+  for (const std::uint32_t page : pages)
+    if (entries_[page].page == nullptr && !entries_[page].being_made) result.push_back(page);
+  return result;
 }
 
-void PageCache::cancel() {
+void PageCache::begin_frame() {
   const std::lock_guard lock(mutex_);
-  for (const std::uint32_t page : queue_) {
-    const auto entry = entries_.find(page);
-    if (entry != entries_.end() && entry->second.waiting) entries_.erase(entry);
-  }
-  queue_.clear();
+  ++frame_;
 }
 
 void PageCache::set_limit(std::uint64_t limit) {
-  Dropped dropped;  // after the lock
+  Dropped dropped;  // freed after the lock
   const std::lock_guard lock(mutex_);
   limit_ = limit;
   dropped = drop_unused();
@@ -120,74 +85,94 @@ std::uint64_t PageCache::bytes() const {
   return bytes_;
 }
 
-void PageCache::run(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    if (!queued_.wait(lock, stop, [this] { return !queue_.empty(); })) return;
-    make_next(lock);
-  }
+// To the list, as used now.
+void PageCache::append(std::uint32_t page) {
+  Entry& entry = entries_[page];
+  entry.frame = frame_;
+  entry.before = most_recent_;
+  entry.after = kNone;
+  (most_recent_ != kNone ? entries_[most_recent_].after : least_recent_) = page;
+  most_recent_ = page;
 }
 
-// The first page that waits in the queue; false: none does.
-bool PageCache::make_next(std::unique_lock<std::mutex>& lock) {
-  while (!queue_.empty()) {
-    const std::uint32_t page = queue_.front();
-    queue_.pop_front();
-    const auto entry = entries_.find(page);
-    if (entry == entries_.end() || !entry->second.waiting) continue;  // somebody made it already
-    try {
-      make(page, lock);
-    } catch (...) {  // who gets it makes it again, and is told
-    }
-    return true;
-  }
-  return false;
+void PageCache::take_out(const Entry& entry) {
+  (entry.before != kNone ? entries_[entry.before].after : least_recent_) = entry.after;
+  (entry.after != kNone ? entries_[entry.after].before : most_recent_) = entry.before;
 }
 
 // With the lock, which it gives up meanwhile.
 std::shared_ptr<const CachedPage> PageCache::make(std::uint32_t page,
                                                   std::unique_lock<std::mutex>& lock) {
-  entries_[page].waiting = false;
+  Entry& entry = entries_[page];
+  entry.being_made = true;
+  std::shared_ptr<CachedPage> old;
+  if (!spare_.empty()) {
+    old = std::move(spare_.back());
+    spare_.pop_back();
+  }
   lock.unlock();
-  std::shared_ptr<const CachedPage> made;
+  Made made;
   try {
-    made = make_(page);
+    made = make_(page, std::move(old));
   } catch (...) {
     lock.lock();
-    entries_.erase(page);
+    entry.being_made = false;
     made_.notify_all();
     throw;
   }
+  Dropped dropped;  // freed after the lock
   lock.lock();
-  Entry& entry = entries_[page];
-  entry.page = made;
-  entry.use = uses_.insert(uses_.end(), page);
-  bytes_ += made->bytes();
+  entry.being_made = false;
+  entry.page = made.page;
+  append(page);
+  bytes_ += made.page->bytes();
   ++counts_.pages_read;
   counts_.bytes_read += bytes_of_(page);
-  Dropped dropped = drop_unused();
-  made_.notify_all();
-  if (!dropped.empty()) {
-    lock.unlock();
-    dropped = {};
-    lock.lock();
+  if (made.waited > 0) {
+    ++counts_.stalls;
+    counts_.stall_seconds += made.waited;
   }
-  return made;
+  dropped = drop_unused();
+  while (!dropped.empty() && spare_.size() < kSpares) {
+    spare_.push_back(std::move(dropped.back()));
+    dropped.pop_back();
+  }
+  lock.unlock();
+  made_.notify_all();
+  return made.page;
+}
+
+// Unless somebody holds it. Returns whether it is gone.
+bool PageCache::drop(std::uint32_t page, Dropped& dropped) {
+  Entry& entry = entries_[page];
+  if (entry.page.use_count() > 1) return false;
+  // Who gave it back did so before what comes now, when its memory is used again: counting up and
+  // down waits for that, looking does not.
+  std::shared_ptr(entry.page).reset();
+  bytes_ -= entry.page->bytes();
+  dropped.push_back(std::move(entry.page));
+  take_out(entry);
+  return true;
 }
 
 PageCache::Dropped PageCache::drop_unused() {
   Dropped dropped;
-  for (auto use = uses_.begin(); bytes_ > limit_ && use != uses_.end();) {
-    const auto entry = entries_.find(*use);
-    if (entry->second.page.use_count() > 1) {
-      ++use;
-      continue;
+  const auto drop_oldest = [&](auto&& wanted) {
+    for (std::uint32_t page = least_recent_;
+         bytes_ > limit_ && page != kNone && wanted(entries_[page]);) {
+      const std::uint32_t next = entries_[page].after;
+      drop(page, dropped);
+      page = next;
     }
-    bytes_ -= entry->second.page->bytes();
-    dropped.push_back(std::move(entry->second.page));
-    entries_.erase(entry);
-    use = uses_.erase(use);
+  };
+  drop_oldest([&](const Entry& entry) { return entry.frame != frame_; });
+  std::size_t held = 0;
+  for (std::uint32_t page = most_recent_; bytes_ > limit_ && page != kNone && held < kMostHeld;) {
+    const std::uint32_t next = entries_[page].before;
+    if (!drop(page, dropped)) ++held;
+    page = next;
   }
+  drop_oldest([](const Entry&) { return true; });
   return dropped;
 }
 

@@ -1,16 +1,12 @@
-// Pages in memory, read by threads before they are needed.
+// Pages in memory.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <list>
 #include <memory>
 #include <mutex>
 #include <span>
-#include <thread>
-#include <unordered_map>
 #include <vector>
 
 namespace delray::packs {
@@ -19,13 +15,13 @@ namespace delray::packs {
 class CachedPage {
  public:
   virtual ~CachedPage() = default;
-  virtual std::uint64_t bytes() const = 0;  // in memory; does not change
+  virtual std::uint64_t bytes() const = 0;  // in memory; does not change while it is in a cache
 };
 
 // Counts since the cache was made.
 struct CacheCounts {
   std::uint64_t hits = 0, misses = 0;  // pages that were, and were not, in memory when asked for
-  std::uint64_t stalls = 0;            // of the misses those that somebody had to wait for
+  std::uint64_t stalls = 0;            // of the misses those for which the disk was waited for
   double stall_seconds = 0;            // that threads waited, summed over them
   std::uint64_t pages_read = 0, bytes_read = 0;
 
@@ -33,30 +29,37 @@ struct CacheCounts {
   void operator+=(const CacheCounts& other);
 };
 
-// A cache by least recent use (Correa, Klosowski and Silva 2002, with threads that fetch). What
-// somebody holds stays, and counts; what nobody holds goes when there are more bytes than the
-// limit. Any thread may call anything.
+// A cache for those who go through many pages again and again, frame by frame. What somebody holds
+// stays, and counts. When there are more bytes than the limit, pages that were not used in this
+// frame go, the least recently used ones first; then, as all of the frame do not fit and will be
+// asked for in the same order in the next one, those that were used most recently (Chou and DeWitt
+// 1985, on loops). Any thread may call anything.
 class PageCache {
  public:
-  // Makes a page: reads it. Called by several threads.
-  using Make = std::function<std::shared_ptr<const CachedPage>(std::uint32_t page)>;
+  struct Made {
+    std::shared_ptr<CachedPage> page;
+    double waited = 0;  // seconds for the disk; 0: the system had it in memory
+  };
+  // Makes a page, by reading it. Called by several threads. `old` is a page that this made before
+  // and that nobody has any more, so that its memory can be used again, or null.
+  using Make = std::function<Made(std::uint32_t page, std::shared_ptr<CachedPage> old)>;
   // The bytes of a page in its file, for counting.
   using BytesOf = std::function<std::uint64_t(std::uint32_t page)>;
 
-  // REQUIRES: threads >= 0; what is passed outlives the cache.
-  PageCache(Make make, BytesOf bytes_of, std::uint64_t limit, int threads);
-  ~PageCache();
+  // Of pages [0, pages). Takes 32 bytes for each of them, besides those that are there.
+  //
+  // REQUIRES: what is passed outlives the cache.
+  PageCache(std::uint32_t pages, Make make, BytesOf bytes_of, std::uint64_t limit);
   PageCache(const PageCache&) = delete;
   PageCache& operator=(const PageCache&) = delete;
 
   // The page, which stays in memory while the pointer does. One that is not there is made by the
   // calling thread, unless another is about to; throws what making it threw.
   std::shared_ptr<const CachedPage> get(std::uint32_t page);
-  // Has the threads make these pages, in this order, unless they are there. What making one of them
-  // throws is thrown by who gets it. Without threads nothing happens.
-  void prefetch(std::span<const std::uint32_t> pages);
-  // Forgets what is not yet begun.
-  void cancel();
+  // Those of the pages that are neither there nor being made.
+  std::vector<std::uint32_t> missing(std::span<const std::uint32_t> pages) const;
+  // All pages that are there were not used in this frame.
+  void begin_frame();
   // Another limit; takes effect at once.
   void set_limit(std::uint64_t limit);
 
@@ -64,30 +67,32 @@ class PageCache {
   std::uint64_t bytes() const;  // of all pages in memory now
 
  private:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+  // Entries of pages that are there are in a list, by their last use.
   struct Entry {
-    std::shared_ptr<const CachedPage> page;  // null while somebody makes it
-    std::list<std::uint32_t>::iterator use;  // in uses_, once it is there
-    bool waiting = false;                    // in the queue, not begun
+    std::shared_ptr<CachedPage> page;
+    std::uint32_t before = kNone, after = kNone;
+    std::uint32_t frame = 0;  // of the last use
+    bool being_made = false;
   };
+  using Dropped = std::vector<std::shared_ptr<CachedPage>>;
 
-  void run(const std::stop_token& stop);
+  void append(std::uint32_t page);
+  void take_out(const Entry& entry);
   std::shared_ptr<const CachedPage> make(std::uint32_t page, std::unique_lock<std::mutex>& lock);
-  bool make_next(std::unique_lock<std::mutex>& lock);
-  // What does not fit the limit, and nobody holds.
-  using Dropped = std::vector<std::shared_ptr<const CachedPage>>;
+  bool drop(std::uint32_t page, Dropped& dropped);
   Dropped drop_unused();
 
   const Make make_;
   const BytesOf bytes_of_;
   mutable std::mutex mutex_;
-  std::condition_variable_any queued_;
   std::condition_variable made_;
-  std::unordered_map<std::uint32_t, Entry> entries_;
-  std::list<std::uint32_t> uses_;  // the least recent first
-  std::deque<std::uint32_t> queue_;
+  std::vector<Entry> entries_;  // by page
+  std::uint32_t least_recent_ = kNone, most_recent_ = kNone;
+  std::uint32_t frame_ = 0;
+  Dropped spare_;  // for the next pages
   std::uint64_t limit_, bytes_ = 0;
   CacheCounts counts_;
-  std::vector<std::jthread> threads_;
 };
 
 }  // namespace delray::packs

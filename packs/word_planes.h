@@ -14,8 +14,11 @@ namespace delray::packs {
 void append_planes(const std::uint32_t* values, std::size_t n, std::size_t stride,
                    std::vector<char>& bytes);
 
-// The inverse, from 4 * n bytes.
-void read_planes(const char* bytes, std::size_t n, std::size_t stride, std::uint32_t* values);
+// The inverse for vectors of k values: from 4 * k * n bytes, which are the planes of the first
+// value of all vectors, then those of the second and so on.
+//
+// REQUIRES: 1 <= k <= 4.
+void read_planes(const char* bytes, std::size_t n, int k, std::uint32_t* values);
 
 // Compressed by LZ4, or as they are where that is no smaller.
 std::vector<char> compress(std::span<const char> bytes);

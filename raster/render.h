@@ -150,10 +150,9 @@ struct PackCounts {
   void operator+=(const PackCounts& other);
 };
 
-// The memory that a rank may take for the pages of a pack, and the threads that read them.
+// The memory that a rank may take for the pages of a pack.
 struct PackMemory {
   std::uint64_t cache_bytes = std::uint64_t{1} << 30;
-  int fetch_threads = 2;
 };
 
 // One rank's work for a frame.

@@ -89,7 +89,6 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
   raster::PackMemory memory;
   // Blocks of the heap are never as full as they could be.
   memory.cache_bytes = std::max(left > other ? (left - other) / 4 * 3 / ranks : 0, kLeast);
-  memory.fetch_threads = std::clamp(parallel::arena_threads(), 1, 16);
   return memory;
 }
 

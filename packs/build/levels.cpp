@@ -151,7 +151,9 @@ class LevelMaker {
     MadeGroup made;
     if (!mesh.has_triangles()) {
       const ReferenceSurface all = surface_below(members, pages, scenes::Mesh(mesh));
-      ThinnedPoints thinned = thin_points(mesh, {all.mesh, below_.errors_of(all.triangles), {}});
+      const auto most =
+          static_cast<std::size_t>(kKept * static_cast<double>(mesh.triangles.size())) + 1;
+      ThinnedPoints thinned = thin_points({all.mesh, below_.errors_of(all.triangles), {}}, most);
       if (is_worth_it(mesh.triangles.size(), thinned.mesh.triangles.size()))
         finish(members, thinned.mesh, all, thinned.errors, made);
       return made;

@@ -31,6 +31,8 @@ void join(std::vector<Reference>& triangles) {
 // Triangles of one page, ascending and each once.
 void append_triangles(const Page& page, std::span<const Reference> triangles,
                       ReferenceSurface& to) {
+  to.mesh.shape = page.mesh.shape;
+  to.mesh.material = page.mesh.material;
   std::vector<std::uint32_t> number(page.mesh.positions.size(), scenes::kNone);
   for (const Reference& reference : triangles) {
     const glm::uvec3& corners = page.mesh.triangles[reference.triangle];

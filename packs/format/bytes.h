@@ -7,6 +7,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -55,8 +56,9 @@ class ByteReader {
  public:
   static constexpr bool kReads = true;
 
-  ByteReader(std::span<const char> bytes, std::string file, std::string place)
-      : bytes_(bytes), file_(std::move(file)), place_(std::move(place)) {}
+  // Refers to the strings.
+  ByteReader(std::span<const char> bytes, std::string_view file, std::string_view place)
+      : bytes_(bytes), file_(file), place_(place) {}
 
   template <class T>
   void value(T& v) {
@@ -103,12 +105,12 @@ class ByteReader {
   std::size_t left() const { return bytes_.size(); }
   bool at_end() const { return bytes_.empty(); }
   [[noreturn]] void fail(const std::string& what) const {
-    throw files::FileError(files::Cause::input, file_, place_, what);
+    throw files::FileError(files::Cause::input, std::string(file_), std::string(place_), what);
   }
 
  private:
   std::span<const char> bytes_;
-  std::string file_, place_;
+  std::string_view file_, place_;
 };
 
 }  // namespace delray::packs::internal

@@ -34,18 +34,19 @@ template <class Vector>
 void read_vectors(ByteReader& from, std::size_t n, std::vector<Vector>& values) {
   values.resize(n);
   if (n == 0) return;
-  auto* const words = reinterpret_cast<std::uint32_t*>(values.data());
-  for (int k = 0; k < Vector::length(); ++k)
-    read_planes(from.take(4 * n).data(), n, static_cast<std::size_t>(Vector::length()), words + k);
+  read_planes(from.take(sizeof(Vector) * n).data(), n, Vector::length(),
+              reinterpret_cast<std::uint32_t*>(values.data()));
 }
 
 bool contains(const geometry::Box3& box, std::span<const glm::vec3> positions) {
-  bool inside = true;  // written so that what is not a number is not
+  unsigned inside = 1;  // written so that what is not a number is not, and without branches
   for (const glm::vec3& p : positions) {
-    inside &= box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y &&
-              box.low.z <= p.z && p.z <= box.high.z;
+    for (int k = 0; k < 3; ++k) {
+      inside &= static_cast<unsigned>(box.low[k] <= p[k]);
+      inside &= static_cast<unsigned>(p[k] <= box.high[k]);
+    }
   }
-  return inside;
+  return inside != 0;
 }
 
 void read_clusters(ByteReader& from, const PageRow& row, Page& page) {
@@ -77,14 +78,14 @@ void read_clusters(ByteReader& from, const PageRow& row, Page& page) {
 
 void read_references(ByteReader& from, const PageRow& row, Page& page) {
   const std::span<const char> bytes = from.take(2 * page.vertices.size());
-  std::uint32_t largest = 0;
+  bool wrong = false;
   for (std::size_t i = 0; i < page.vertices.size(); ++i) {
     std::uint16_t vertex = 0;
     std::memcpy(&vertex, bytes.data() + 2 * i, sizeof vertex);
     page.vertices[i] = vertex;
-    largest = std::max(largest, page.vertices[i]);
+    wrong |= vertex >= row.vertices;
   }
-  if (largest >= row.vertices) from.fail("a vertex of a cluster is none of the page");
+  if (wrong) from.fail("a vertex of a cluster is none of the page");
 }
 
 void read_corners(ByteReader& from, Page& page) {
@@ -147,8 +148,8 @@ std::vector<char> encode(const Page& page) {
   return std::move(bytes.bytes());
 }
 
-Page decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh,
-            const std::string& file, const std::string& place) {
+void decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh,
+            const std::string& file, const std::string& place, Page& page) {
   thread_local std::vector<char> unpacked;
   ByteReader packed(bytes, file, place);
   std::uint32_t first_size = 0;
@@ -156,7 +157,6 @@ Page decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh
   const std::span<const char> first = packed.take(first_size);
   const std::span<const char> second = bytes.subspan(sizeof first_size + first_size);
 
-  Page page;
   page.mesh.shape = mesh.shape;
   page.mesh.material = mesh.material;
   const std::size_t n = row.vertices;
@@ -175,12 +175,11 @@ Page decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh
   if (!decompress(second, unpacked)) packed.fail("its attributes do not unpack");
   ByteReader attributes(unpacked, file, place);
   const Attributes& has = mesh.attributes;
-  if (has.normals) read_vectors(attributes, n, page.mesh.normals);
-  if (has.uvs) read_vectors(attributes, n, page.mesh.uvs);
-  if (has.uvs2) read_vectors(attributes, n, page.mesh.uvs2);
-  if (has.tangents) read_vectors(attributes, n, page.mesh.tangents);
-  if (has.colours) read_vectors(attributes, n, page.mesh.colours);
-  return page;
+  read_vectors(attributes, has.normals ? n : 0, page.mesh.normals);
+  read_vectors(attributes, has.uvs ? n : 0, page.mesh.uvs);
+  read_vectors(attributes, has.uvs2 ? n : 0, page.mesh.uvs2);
+  read_vectors(attributes, has.tangents ? n : 0, page.mesh.tangents);
+  read_vectors(attributes, has.colours ? n : 0, page.mesh.colours);
 }
 
 }  // namespace delray::packs::internal

@@ -16,10 +16,10 @@ namespace delray::packs::internal {
 // Positions and attributes are planes (word_planes.h) of one coordinate after the other.
 std::vector<char> encode(const Page& page);
 
-// REQUIRES: encode() made the bytes of a page with these counts, or anybody. Throws FileError
-// (input) for anything that is not a page of the mesh: indices out of range, positions that are not
-// in the row's box.
-Page decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh,
-            const std::string& file, const std::string& place);
+// Into `page`, whatever it was before: its memory is used again. Throws FileError (input) for
+// anything that is not a page of the mesh with the row's counts: indices out of range, positions
+// that are not in the row's box.
+void decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh,
+            const std::string& file, const std::string& place, Page& page);
 
 }  // namespace delray::packs::internal

@@ -159,33 +159,27 @@ void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) const {
     if (codes[block] != kEmptyCode) visibility.drop_behind(block, codes[block]);
 }
 
-// Each draw once.
-void RegionDrawing::hold(std::vector<std::uint32_t>& draws) const {
-  std::sort(draws.begin(), draws.end());
-  draws.erase(std::unique(draws.begin(), draws.end()), draws.end());
-  task_.list.holder->hold(draws);
-}
-
 // The draws of large triangles that are looked up while they are drawn.
-void RegionDrawing::hold_large(int tile, std::vector<std::uint32_t>& draws) const {
+void RegionDrawing::find_large(int tile, std::vector<std::uint32_t>& draws) const {
   draws.clear();
   BinnedTriangles& large = scratch_.deferred.large;
   for (const std::uint32_t entry : large.of_tile(tile)) {
     if ((entry & kMasked) != 0 || into_tiles_.shade_now)
       draws.push_back(task_.list.cluster_of(large.triangles[entry & kIndex].number).draw);
   }
-  hold(draws);
 }
 
-// The draws of all that is seen in the tile, or through it.
-void RegionDrawing::hold_seen(const TileJob& job, const VisibilityTile* tile,
-                              const TileMemory& memory, std::vector<std::uint32_t>& draws) const {
+// The draws of all that is seen in the tile, or through it. By draw: the tile it was last seen in.
+void RegionDrawing::find_seen(const TileJob& job, const VisibilityTile* tile,
+                              const TileMemory& memory, std::vector<int>& seen_in,
+                              std::vector<std::uint32_t>& draws) const {
   draws.clear();
   std::uint32_t last = kNothing;
   const auto add = [&](std::uint32_t number) {
     if (number == kNothing || number >> kClusterBits == last) return;
     last = number >> kClusterBits;
-    draws.push_back(task_.list.clusters[last].draw);
+    const std::uint32_t draw = task_.list.clusters[last].draw;
+    if (std::exchange(seen_in[draw], job.tile) != job.tile) draws.push_back(draw);
   };
   for (const geometry::Rect& rect : tiles_.rects_of(job)) {
     for (int y = rect.y0; y < rect.y1 && tile != nullptr; ++y) {
@@ -194,7 +188,6 @@ void RegionDrawing::hold_seen(const TileJob& job, const VisibilityTile* tile,
     }
   }
   for (const BlendedFragment& fragment : memory.blended) add(number_of(fragment.key));
-  hold(draws);
 }
 
 void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
@@ -208,7 +201,8 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
     StageClock<2> clock;
     TileMemory& mine = *scratch_.tile_memory[worker];
     MeshHolder* const holder = task_.list.holder;
-    std::vector<std::uint32_t> held;
+    std::vector<std::uint32_t> draws;
+    std::vector<int> seen_in(holder != nullptr ? task_.list.draws.size() : 0, -1);
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
@@ -223,10 +217,10 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
         tile->clear(scratch_.tiles.rect(index));
       }
       if (tile != nullptr) {
-        if (holder != nullptr) hold_large(index, held);
+        if (holder != nullptr) find_large(index, draws);
+        const HeldDraws held(holder, draws);
         shaded_here += draw_large(into_tiles_, worker, scratch_.deferred.large,
                                   {index, scratch_.tiles.rect(index), *tile});
-        if (holder != nullptr) holder->release(held);
       }
       if (tile != nullptr) drop_hidden(index, *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
@@ -238,9 +232,11 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
                           static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
                     : nullptr;
       TileView view(frame_->shading(), tile, colours, mine);
-      if (holder != nullptr) hold_seen(jobs[k], tile, mine, held);
-      finish_tile(tiles_.rects_of(jobs[k]), view);
-      if (holder != nullptr) holder->release(held);
+      if (holder != nullptr) find_seen(jobs[k], tile, mine, seen_in, draws);
+      {
+        const HeldDraws held(holder, draws);
+        finish_tile(tiles_.rects_of(jobs[k]), view);
+      }
       clock.finish(1);
       shown_here += view.shown();
       shaded_here += view.shaded();

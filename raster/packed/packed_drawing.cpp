@@ -56,15 +56,15 @@ void PackedDrawing::fill_clusters(std::uint32_t draw, const RasterPage& page) {
                 kPageTriangles
           : packed_.pack.first_primitives()[placed.instance] +
                 packed_.pack.pages()[placed.page].first;
-  const std::vector<MeshCluster>& parts = page.clusters.blocks.front()->clusters;
+  const std::vector<MeshCluster>& parts = page.clusters().blocks.front()->clusters;
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
-    list_.clusters[std::size_t{draw} * packs::kPageClusters + part] = {
-        draw,
-        parts[part].first,
-        part,
-        0,
-        static_cast<std::uint16_t>(parts[part].count),
-        primitive + parts[part].first};
+    // Its draw is known, and looked up before it is held.
+    Cluster& cluster = list_.clusters[std::size_t{draw} * packs::kPageClusters + part];
+    cluster.first = parts[part].first;
+    cluster.part = part;
+    cluster.begin = 0;
+    cluster.end = static_cast<std::uint16_t>(parts[part].count);
+    cluster.primitive = primitive + parts[part].first;
   }
 }
 
@@ -77,18 +77,18 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
   TriangleCounts& counts = rank_.counts.triangles;
   PackCounts& pack = rank_.pack;
   pack.pages += pages_.size();
-  std::vector<std::uint32_t> ahead, batch, clusters;
+  std::vector<std::uint32_t> ahead, clusters;
+  packed_.cache.begin_frame();
   for (std::size_t at = 0, asked = 0; at < order.size();) {
     ahead.clear();
     for (; asked < std::min(at + kPagesAhead, order.size()); ++asked) {
       const PlacedPage& page = pages_[order[asked]];
       if (!hides(drawing, page)) ahead.push_back(page.page);
     }
-    packed_.cache.prefetch(ahead);
+    packed_.pack.will_need(packed_.cache.missing(ahead));
 
-    batch.clear();
     clusters.clear();
-    for (; at < order.size() && batch.size() < kBatchPages; ++at) {
+    for (std::size_t drawn = 0; at < order.size() && drawn < kBatchPages; ++at) {
       const PlacedPage& page = pages_[order[at]];
       const packs::PageRow& row = packed_.pack.pages()[page.page];
       if (hides(drawing, page)) {
@@ -98,39 +98,34 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
         ++pack.pages_hidden;
         continue;
       }
-      batch.push_back(order[at]);
-      for (std::uint32_t part = 0; part < row.clusters; ++part)
+      ++drawn;
+      for (std::uint32_t part = 0; part < row.clusters; ++part) {
         clusters.push_back(order[at] * packs::kPageClusters + part);
+        list_.clusters[clusters.back()].draw = order[at];
+      }
       pack.levels[std::min<std::size_t>(row.level, PackCounts::kLevels - 1)] += row.triangles;
     }
     pack.clusters += clusters.size();
-    hold(batch);
     drawing.draw_in_order(clusters);
-    release(batch);
   }
-  packed_.cache.cancel();
 }
 
 void PackedDrawing::count() { rank_.pack.cache += packed_.cache.counts() - before_; }
 
 void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
-  std::size_t got = 0;
-  try {
-    for (; got < draws.size(); ++got) {
-      const std::uint32_t draw = draws[got];
-      std::shared_ptr<const packs::CachedPage> page = packed_.cache.get(pages_[draw].page);
-      const std::lock_guard lock(mutex_);
-      if (holders_[draw]++ > 0) continue;
-      const auto& made = static_cast<const RasterPage&>(*page);
-      list_.draws[draw].mesh = &made.mesh;
-      if (list_.draws[draw].clusters == nullptr) fill_clusters(draw, made);
-      // Nothing is made of what is there.
-      list_.draws[draw].clusters = const_cast<MeshClusters*>(&made.clusters);
-      held_[draw] = std::move(page);
-    }
-  } catch (...) {
-    release(draws.first(got));
-    throw;
+  std::vector<std::shared_ptr<const packs::CachedPage>> pages;
+  pages.reserve(draws.size());
+  for (const std::uint32_t draw : draws) pages.push_back(packed_.cache.get(pages_[draw].page));
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const std::uint32_t draw = draws[i];
+    if (holders_[draw]++ > 0) continue;
+    const auto& made = static_cast<const RasterPage&>(*pages[i]);
+    list_.draws[draw].mesh = &made.mesh();
+    if (list_.draws[draw].clusters == nullptr) fill_clusters(draw, made);
+    // Nothing is made of what is there.
+    list_.draws[draw].clusters = const_cast<MeshClusters*>(&made.clusters());
+    held_[draw] = std::move(pages[i]);
   }
 }
 

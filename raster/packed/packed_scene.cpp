@@ -7,34 +7,46 @@ static_assert(packs::kClusterTriangles == kClusterTriangles);
 static_assert(packs::kClusterVertices == kClusterVertices);
 static_assert(packs::kCornerPadding == kCornerPadding);
 
-RasterPage::RasterPage(packs::Page&& page) : mesh(std::move(page.mesh)) {
-  auto block = std::make_unique<ClusterBlock>();
-  for (const packs::PageCluster& cluster : page.clusters) {
-    block->clusters.push_back({cluster.first, cluster.count, cluster.first_vertex, cluster.vertices,
-                               cluster.first_corner, cluster.box, cluster.cone.axis,
-                               cluster.cone.cosine, cluster.cone.least_height,
-                               cluster.normals_agree});
-    block->box.include(cluster.box);
+RasterPage::RasterPage() { clusters_.blocks.push_back(std::make_unique<ClusterBlock>()); }
+
+double RasterPage::read(const packs::PackReader& pack, std::uint32_t number) {
+  ClusterBlock& block = *clusters_.blocks.front();
+  const auto exchange = [&] {
+    block.vertices.swap(page_.vertices);
+    block.corners.swap(page_.corners);
+  };
+  exchange();
+  const double waited = pack.read(number, page_);
+  exchange();
+  block.clusters.clear();
+  block.box = {};
+  for (const packs::PageCluster& cluster : page_.clusters) {
+    const auto vertices = std::span(block.vertices).subspan(cluster.first_vertex, cluster.vertices);
+    block.clusters.push_back({cluster.first, cluster.count, cluster.first_vertex, cluster.vertices,
+                              cluster.first_corner, cluster.box, cluster.cone.axis,
+                              cluster.cone.cosine, cluster.cone.least_height, cluster.normals_agree,
+                              are_consecutive(vertices)});
+    block.box.include(cluster.box);
   }
-  block->vertices = std::move(page.vertices);
-  block->corners = std::move(page.corners);
-  clusters.blocks.push_back(std::move(block));
-  const ClusterBlock& made = *clusters.blocks.front();
   const auto of = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
   constexpr std::uint64_t kOverhead = 512;  // blocks of the heap, the cache's entry
-  bytes_ = kOverhead + sizeof(*this) + sizeof(ClusterBlock) + of(made.clusters) +
-           of(made.vertices) + of(made.corners) + of(mesh.positions) + of(mesh.normals) +
-           of(mesh.uvs) + of(mesh.uvs2) + of(mesh.tangents) + of(mesh.colours) + of(mesh.triangles);
+  bytes_ = kOverhead + sizeof(*this) + sizeof(ClusterBlock) + of(block.clusters) +
+           of(block.vertices) + of(block.corners) + page_.bytes();
+  return waited;
 }
 
 PackedScene::PackedScene(const packs::PackReader& source, const PackMemory& memory)
     : pack(source),
       cache(
-          [&source](std::uint32_t page) {
-            return std::make_shared<const RasterPage>(source.read(page));
+          static_cast<std::uint32_t>(source.pages().size()),
+          [&source](std::uint32_t page, std::shared_ptr<packs::CachedPage> old) {
+            auto made = old != nullptr ? std::static_pointer_cast<RasterPage>(std::move(old))
+                                       : std::make_shared<RasterPage>();
+            const double waited = made->read(source, page);
+            return packs::PageCache::Made{std::move(made), waited};
           },
-          [&source](std::uint32_t page) { return source.pages()[page].bytes; }, memory.cache_bytes,
-          memory.fetch_threads) {
+          [&source](std::uint32_t page) { return source.pages()[page].bytes; },
+          memory.cache_bytes) {
   for (const packs::MeshRow& mesh : source.meshes()) {
     std::vector<packs::PageTree>& levels = trees.emplace_back();
     for (const packs::PageRange& range : mesh.levels)

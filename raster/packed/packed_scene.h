@@ -15,13 +15,18 @@ namespace delray::raster {
 // A page as it is drawn: a mesh whose clusters are known.
 class RasterPage final : public packs::CachedPage {
  public:
-  explicit RasterPage(packs::Page&& page);
-  std::uint64_t bytes() const override { return bytes_; }
+  RasterPage();
+  // Another page into the same memory. Returns for how many seconds the disk was waited for. Throws
+  // FileError.
+  double read(const packs::PackReader& pack, std::uint32_t number);
 
-  scenes::Mesh mesh;
-  MeshClusters clusters;
+  std::uint64_t bytes() const override { return bytes_; }
+  const scenes::Mesh& mesh() const { return page_.mesh; }
+  const MeshClusters& clusters() const { return clusters_; }
 
  private:
+  packs::Page page_;  // but for what clusters_ have
+  MeshClusters clusters_;
   std::uint64_t bytes_ = 0;
 };
 

@@ -18,6 +18,7 @@ struct SetUpResult {
   std::size_t fragments = 0;  // elements of the three that count
 
   WindowTriangles windows;
+  WindowSpots spots;
   bool fragments_only = false;  // instead of windows
 
   // Triangles that touch few tiles, and their entries; and those that touch many.
@@ -38,6 +39,7 @@ struct SetUpResult {
   void clear() {
     fragments = 0;
     windows.size = 0;
+    spots.size = 0;
     triangles.clear();
     entries.clear();
     splats.clear();

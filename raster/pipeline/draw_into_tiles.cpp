@@ -72,6 +72,7 @@ void sort_by_tile(Worker& worker) {
   const SetUpResult& result = worker.result;
   const std::span addresses(result.address.data(), result.fragments);
   const std::span window_tiles(result.windows.tile.data(), result.windows.size);
+  const std::span spot_tiles(result.spots.tile.data(), result.spots.size);
   std::uint32_t low = kNothing, high = 0;
   const auto touch = [&](std::uint32_t tile) {
     low = std::min(low, tile);
@@ -82,19 +83,21 @@ void sort_by_tile(Worker& worker) {
   for (const std::uint32_t address : addresses) ++counts[touch(address / kTilePixels)].fragments;
   for (const SetUpResult::Entry& entry : result.entries) ++counts[touch(entry.tile)].entries;
   for (const std::uint32_t tile : window_tiles) ++counts[touch(tile)].windows;
+  for (const std::uint32_t tile : spot_tiles) ++counts[touch(tile)].spots;
   for (const SetUpResult::Entry& entry : result.splat_entries) ++counts[touch(entry.tile)].splats;
 
   worker.touched.clear();
   Worker::TileCounts next;
   for (std::uint32_t tile = low; tile <= high && low != kNothing; ++tile) {
     const Worker::TileCounts here = counts[tile];
-    if ((here.fragments | here.entries | here.windows | here.splats) == 0) continue;
+    if ((here.fragments | here.entries | here.windows | here.spots | here.splats) == 0) continue;
     counts[tile] = next;
     const Worker::TileCounts first = next;
     next = {first.fragments + here.fragments, first.entries + here.entries,
-            first.windows + here.windows, first.splats + here.splats};
+            first.windows + here.windows, first.spots + here.spots, first.splats + here.splats};
     worker.touched.push_back({tile, first.fragments, next.fragments, first.entries, next.entries,
-                              first.windows, next.windows, first.splats, next.splats});
+                              first.windows, next.windows, first.spots, next.spots, first.splats,
+                              next.splats});
   }
 
   if (worker.fragments.size() < next.fragments) worker.fragments.resize(next.fragments);
@@ -111,6 +114,9 @@ void sort_by_tile(Worker& worker) {
   if (worker.windows.size() < next.windows) worker.windows.resize(next.windows);
   for (std::uint32_t k = 0; k < window_tiles.size(); ++k)
     worker.windows[counts[window_tiles[k]].windows++] = k;
+  if (worker.spots.size() < next.spots) worker.spots.resize(next.spots);
+  for (std::uint32_t k = 0; k < spot_tiles.size(); ++k)
+    worker.spots[counts[spot_tiles[k]].spots++] = k;
   if (worker.splats.size() < next.splats) worker.splats.resize(next.splats);
   for (const SetUpResult::Entry& entry : result.splat_entries)
     worker.splats[counts[entry.tile].splats++] = entry.entry;
@@ -154,6 +160,10 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
                     std::span(worker.windows)
                         .subspan(touched.first_window, touched.last_window - touched.first_window),
                     tile);
+  rasterize_spots(
+      worker.result.spots,
+      std::span(worker.spots).subspan(touched.first_spot, touched.last_spot - touched.first_spot),
+      tile);
   rasterize_fragments(fragments, tile);
   rasterize_splats(task.screen, rect, worker.result.splats, splats, tile);
   if (entries.empty()) return;
@@ -315,8 +325,12 @@ void draw_clusters(const DrawIntoTiles& task, std::span<const std::uint32_t> clu
       if (begin >= clusters.size()) break;
       worker.result.clear();
       worker.result.fragments_only = task.shade_now != nullptr;
-      for (std::size_t i = begin; i < std::min(begin + batch, clusters.size()); ++i)
-        set_up_one(task, clusters[i], tiles, worker);
+      const std::span mine = clusters.subspan(begin, std::min(batch, clusters.size() - begin));
+      worker.draws.clear();
+      for (const std::uint32_t cluster : mine)
+        worker.draws.push_back(task.list.clusters[cluster].draw);
+      const HeldDraws held(task.list.holder, worker.draws);
+      for (const std::uint32_t cluster : mine) set_up_one(task, cluster, tiles, worker);
       clock.finish(0);
       sort_by_tile(worker);
       clock.finish(1);

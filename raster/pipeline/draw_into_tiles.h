@@ -16,12 +16,12 @@ namespace delray::raster {
 // Memory of a thread while it draws, kept from batch to batch and frame to frame.
 struct Worker {
   struct TileCounts {
-    std::uint32_t fragments = 0, entries = 0, windows = 0, splats = 0;
+    std::uint32_t fragments = 0, entries = 0, windows = 0, spots = 0, splats = 0;
   };
   struct TouchedTile {
     std::uint32_t tile;
     std::uint32_t first_fragment, last_fragment, first_entry, last_entry;
-    std::uint32_t first_window, last_window, first_splat, last_splat;
+    std::uint32_t first_window, last_window, first_spot, last_spot, first_splat, last_splat;
   };
 
   std::size_t index = 0;  // among the drawing's
@@ -32,7 +32,9 @@ struct Worker {
   std::vector<Fragment> fragments;     // by tile
   std::vector<std::uint32_t> entries;  // by tile
   std::vector<std::uint32_t> windows;  // by tile
+  std::vector<std::uint32_t> spots;    // by tile
   std::vector<std::uint32_t> splats;   // by tile
+  std::vector<std::uint32_t> draws;    // of a batch
   std::uint64_t shaded = 0;            // pixels, as they were drawn
 };
 

@@ -36,6 +36,18 @@ void append_clusters(const Piece& piece, std::uint32_t draw, DrawList& list) {
 
 }  // namespace
 
+HeldDraws::HeldDraws(MeshHolder* holder, std::vector<std::uint32_t>& draws)
+    : holder_(holder), draws_(draws) {
+  if (holder == nullptr) return;
+  std::sort(draws.begin(), draws.end());
+  draws.erase(std::unique(draws.begin(), draws.end()), draws.end());
+  holder->hold(draws);
+}
+
+HeldDraws::~HeldDraws() {
+  if (holder_ != nullptr) holder_->release(draws_);
+}
+
 std::vector<Piece> pieces_of(const scenes::Scene& scene,
                              std::span<const std::uint64_t> first_primitives, std::uint64_t begin,
                              std::uint64_t end) {

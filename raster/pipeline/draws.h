@@ -59,6 +59,20 @@ class MeshHolder {
   virtual void release(std::span<const std::uint32_t> draws) = 0;
 };
 
+// Holds draws, each once, for as long as this and the vector live, which is sorted. Without a
+// holder nothing happens.
+class HeldDraws {
+ public:
+  HeldDraws(MeshHolder* holder, std::vector<std::uint32_t>& draws);
+  ~HeldDraws();
+  HeldDraws(const HeldDraws&) = delete;
+  HeldDraws& operator=(const HeldDraws&) = delete;
+
+ private:
+  MeshHolder* const holder_;
+  const std::vector<std::uint32_t>& draws_;
+};
+
 // Draws and clusters in ascending order of primitives. A triangle's number within the list is
 // cluster << kClusterBits | place in the cluster: it ascends as primitive numbers do, so that ties
 // of depth resolve as they would over the whole scene, and it leads back to the triangle.

@@ -106,12 +106,6 @@ bool normals_agree(const scenes::Mesh& mesh, const MeshCluster& cluster) {
   return true;
 }
 
-bool consecutive(std::span<const std::uint32_t> vertices) {
-  for (std::size_t i = 1; i < vertices.size(); ++i)
-    if (vertices[i] != vertices[0] + i) return false;
-  return true;
-}
-
 std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t begin,
                                          std::uint32_t end) {
   auto block = std::make_unique<ClusterBlock>();
@@ -146,7 +140,7 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
     }
     bound(mesh, *block, cluster);
     cluster.normals_agree = normals_agree(mesh, cluster);
-    cluster.consecutive = consecutive(block->vertices_of(cluster));
+    cluster.consecutive = are_consecutive(block->vertices_of(cluster));
     block->box.include(cluster.box);
     block->clusters.push_back(cluster);
   }
@@ -157,6 +151,12 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
 }
 
 }  // namespace
+
+bool are_consecutive(std::span<const std::uint32_t> vertices) {
+  for (std::size_t i = 1; i < vertices.size(); ++i)
+    if (vertices[i] != vertices[0] + i) return false;
+  return true;
+}
 
 void MeshClusters::make(const scenes::Mesh& mesh, std::uint32_t first, std::uint32_t count) {
   const auto all = static_cast<std::uint32_t>(mesh.triangles.size());

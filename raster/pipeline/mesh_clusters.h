@@ -53,6 +53,9 @@ inline bool normal_agrees(const scenes::Mesh& mesh, std::uint32_t corner, const 
   return glm::dot(mesh.normals[corner], edges) >= 0;
 }
 
+// Whether each is one more than the one before.
+bool are_consecutive(std::span<const std::uint32_t> vertices);
+
 // The clusters of up to kBlockTriangles consecutive triangles of a mesh, ascending.
 struct ClusterBlock {
   std::vector<MeshCluster> clusters;

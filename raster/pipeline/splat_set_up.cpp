@@ -1,9 +1,10 @@
 // Sets up splats: small spots by vectors, one lane a point, pixel by pixel of the square around all
 // of a vector; others one by one.
 //
-// Splats of a few pixels become fragments at once; larger ones, of which a cluster may have any
-// number, keep an entry in each tile that they touch. Cost: about a nanosecond a point and pixel of
-// the square, some dozens a splat.
+// Spots of a few pixels in one tile become windows, which are drawn row by row; other splats of a
+// few pixels become fragments at once; larger ones, of which a cluster may have any number, keep an
+// entry in each tile that they touch. Cost: less than a nanosecond a point and pixel of the square,
+// some dozens a splat.
 //
 // Degenerate: spots before the near plane or outside of the guard band are dropped, as are splats
 // without a pixel of `clip`.
@@ -26,6 +27,9 @@ namespace delray::raster {
 
 // Spots of a larger radius are set up one by one.
 inline constexpr std::int32_t kLargestSpot = 4 * kSubpixels;
+
+// Those with pixels beside their own become windows, as far as they reach no farther.
+inline constexpr std::int32_t kWindowReach = (WindowSpots::kWindow - 1) / 2;
 
 // Pixels that a spot may reach to each side of its own.
 constexpr std::int32_t reach_of(std::int32_t radius) {
@@ -98,66 +102,144 @@ void find_radii(const SplatDraw& splats, const Screen& screen, const SpotPlaces&
   radii.largest = hn::GetLane(hn::MaxOfLanes(di, largest));
 }
 
-// Returns how many spots have pixels.
-//
-// REQUIRES: the result has room for all pixels of the square of the largest reach around each, and
-// a vector.
-std::uint32_t set_up_spots(const SpotsToSetUp& spots, SetUpResult& result) {
+// A vector of spots.
+struct Lanes {
+  I x, y, radius;  // in subpixels from the centre of the screen; those not used: radius 0
+  I column, row;   // of the pixel of the frame that each is in
+  I code, number;
+  Mask used;
+};
+
+HWY_INLINE Lanes load(const SpotsToSetUp& spots, std::size_t place) {
   const Ints d;
-  const hn::RebindToUnsigned<Ints> du;
-  const std::size_t lanes = hn::Lanes(d);
-  const I centre_x = hn::Set(d, spots.screen.centre_x),
-          centre_y = hn::Set(d, spots.screen.centre_y);
-  const I tiles_x = hn::Set(d, spots.screen.tiles_x), in_tile = hn::Set(d, kTileSize - 1);
+  Lanes lanes;
+  lanes.x = hn::LoadU(d, spots.vertices.x + place);
+  lanes.y = hn::LoadU(d, spots.vertices.y + place);
+  lanes.used = hn::And(hn::FirstN(d, spots.end - place), hn::Ne(lanes.x, hn::Set(d, kOutside)));
+  lanes.radius = hn::IfThenElseZero(lanes.used, hn::LoadU(d, spots.radii.of + place));
+  lanes.column = hn::Add(hn::ShiftRight<kSubpixelBits>(lanes.x), hn::Set(d, spots.screen.centre_x));
+  lanes.row = hn::Add(hn::ShiftRight<kSubpixelBits>(lanes.y), hn::Set(d, spots.screen.centre_y));
+  lanes.code =
+      hn::Not(hn::LoadU(d, reinterpret_cast<const std::int32_t*>(spots.vertices.depth) + place));
+  lanes.number =
+      hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(spots.first_number + place)));
+  return lanes;
+}
+
+// Calls f(i, j, covered) for the pixels i to the right of and j below each spot's own one.
+template <class F>
+HWY_INLINE void for_each_pixel(const SpotsToSetUp& spots, const Lanes& lanes, std::int32_t reach,
+                               F&& f) {
+  const Ints d;
+  const I none = hn::Set(d, -1), squared = hn::Mul(lanes.radius, lanes.radius);
   const I x0 = hn::Set(d, spots.clip.x0), width = hn::Set(d, spots.clip.width());
   const I y0 = hn::Set(d, spots.clip.y0), height = hn::Set(d, spots.clip.height());
-  std::size_t shown = 0;
-  std::size_t size = result.fragments;
-  for (std::size_t place = spots.begin; place < spots.end; place += lanes) {
-    const I x = hn::LoadU(d, spots.vertices.x + place), y = hn::LoadU(d, spots.vertices.y + place);
-    const I depth =
-        hn::LoadU(d, reinterpret_cast<const std::int32_t*>(spots.vertices.depth) + place);
-    const I number =
-        hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(spots.first_number + place)));
-    const Mask used = hn::And(hn::FirstN(d, spots.end - place), hn::Ne(x, hn::Set(d, kOutside)));
-    const I radius = hn::IfThenElseZero(used, hn::LoadU(d, spots.radii.of + place));
-    const I squared = hn::Mul(radius, radius);
-    const std::int32_t reach = reach_of(hn::GetLane(hn::MaxOfLanes(d, radius)));
-    Mask any = hn::Ne(x, x);
-    const I own_x = hn::ShiftRight<kSubpixelBits>(x), own_y = hn::ShiftRight<kSubpixelBits>(y);
-    for (std::int32_t j = -reach; j <= reach; ++j) {
-      const I row = hn::Add(own_y, hn::Set(d, j));
-      const I dy = hn::Sub(hn::Add(hn::ShiftLeft<kSubpixelBits>(row), hn::Set(d, kHalfPixel)), y);
-      const I pixel_y = hn::Add(row, centre_y), from_top = hn::Sub(pixel_y, y0);
-      const Mask in_rows =
-          hn::And(used, hn::And(hn::Gt(from_top, hn::Set(d, -1)), hn::Lt(from_top, height)));
-      const I tile_row = hn::Mul(hn::ShiftRight<6>(pixel_y), tiles_x);
-      const I row_address = hn::ShiftLeft<6>(hn::And(pixel_y, in_tile));
-      for (std::int32_t i = -reach; i <= reach; ++i) {
-        const I column = hn::Add(own_x, hn::Set(d, i));
-        const I pixel_x = hn::Add(column, centre_x), from_left = hn::Sub(pixel_x, x0);
-        Mask covered =
-            hn::And(in_rows, hn::And(hn::Gt(from_left, hn::Set(d, -1)), hn::Lt(from_left, width)));
-        if (i != 0 || j != 0) {
-          const I dx =
-              hn::Sub(hn::Add(hn::ShiftLeft<kSubpixelBits>(column), hn::Set(d, kHalfPixel)), x);
-          const I apart = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
-          covered = hn::And(covered, hn::Lt(apart, squared));
-        }
-        const I tile = hn::Add(tile_row, hn::ShiftRight<6>(pixel_x));
-        const I address =
-            hn::Or(hn::ShiftLeft<12>(tile), hn::Or(row_address, hn::And(pixel_x, in_tile)));
-        const auto mask = hn::RebindMask(du, covered);
-        append(hn::BitCast(du, address), mask, result.address.data() + size);
-        append(hn::BitCast(du, hn::Not(depth)), mask, result.code.data() + size);
-        append(hn::BitCast(du, number), mask, result.number.data() + size);
-        size += hn::CountTrue(d, covered);
-        any = hn::Or(any, covered);
+  const auto to_centre = [&](I subpixels, std::int32_t pixels) HWY_ATTR {
+    const I own = hn::ShiftRight<kSubpixelBits>(subpixels);
+    const I pixel = hn::ShiftLeft<kSubpixelBits>(hn::Add(own, hn::Set(d, pixels)));
+    return hn::Sub(hn::Add(pixel, hn::Set(d, kHalfPixel)), subpixels);
+  };
+  for (std::int32_t j = -reach; j <= reach; ++j) {
+    const I dy = to_centre(lanes.y, j);
+    const I from_top = hn::Sub(hn::Add(lanes.row, hn::Set(d, j)), y0);
+    const Mask in_rows =
+        hn::And(lanes.used, hn::And(hn::Gt(from_top, none), hn::Lt(from_top, height)));
+    for (std::int32_t i = -reach; i <= reach; ++i) {
+      const I from_left = hn::Sub(hn::Add(lanes.column, hn::Set(d, i)), x0);
+      Mask covered = hn::And(in_rows, hn::And(hn::Gt(from_left, none), hn::Lt(from_left, width)));
+      if (i != 0 || j != 0) {
+        const I dx = to_centre(lanes.x, i);
+        const I apart = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+        covered = hn::And(covered, hn::Lt(apart, squared));
       }
+      f(i, j, covered);
     }
+  }
+}
+
+HWY_INLINE void append(I v, Mask mask, std::uint32_t* to) {
+  const hn::RebindToUnsigned<Ints> du;
+  append(hn::BitCast(du, v), hn::RebindMask(du, mask), to);
+}
+
+// Returns which spots have pixels.
+HWY_INLINE Mask append_fragments(const SpotsToSetUp& spots, const Lanes& lanes, std::int32_t reach,
+                                 SetUpResult& result) {
+  const Ints d;
+  const I in_tile = hn::Set(d, kTileSize - 1), tiles_x = hn::Set(d, spots.screen.tiles_x);
+  std::size_t size = result.fragments;
+  Mask any = hn::Ne(lanes.x, lanes.x);
+  for_each_pixel(spots, lanes, reach, [&](std::int32_t i, std::int32_t j, Mask covered) HWY_ATTR {
+    const I x = hn::Add(lanes.column, hn::Set(d, i)), y = hn::Add(lanes.row, hn::Set(d, j));
+    const I tile = hn::Add(hn::Mul(hn::ShiftRight<6>(y), tiles_x), hn::ShiftRight<6>(x));
+    const I pixel = hn::Or(hn::ShiftLeft<6>(hn::And(y, in_tile)), hn::And(x, in_tile));
+    append(hn::Or(hn::ShiftLeft<12>(tile), pixel), covered, result.address.data() + size);
+    append(lanes.code, covered, result.code.data() + size);
+    append(lanes.number, covered, result.number.data() + size);
+    size += hn::CountTrue(d, covered);
+    any = hn::Or(any, covered);
+  });
+  result.fragments = size;
+  return any;
+}
+
+// Those that lie in one tile become windows, the others fragments. Returns which have pixels.
+//
+// REQUIRES: reach <= kWindowReach.
+HWY_INLINE Mask append_windows(const SpotsToSetUp& spots, const Lanes& lanes, std::int32_t reach,
+                               SetUpResult& result) {
+  const Ints d;
+  I upper = hn::Zero(d), lower = hn::Zero(d);
+  for_each_pixel(spots, lanes, reach, [&](std::int32_t i, std::int32_t j, Mask covered) HWY_ATTR {
+    const int bit = (j + reach) * WindowSpots::kWindow + i + reach;
+    I& half = bit < 32 ? upper : lower;
+    half = hn::Or(
+        half, hn::IfThenElseZero(covered, hn::Set(d, static_cast<std::int32_t>(1U << (bit & 31)))));
+  });
+  const Mask any = hn::Ne(hn::Or(upper, lower), hn::Zero(d));
+  const I in_tile = hn::Set(d, kTileSize - 1), side = hn::Set(d, 2 * reach);
+  const I x = hn::Sub(lanes.column, hn::Set(d, reach)), y = hn::Sub(lanes.row, hn::Set(d, reach));
+  const I i0 = hn::And(x, in_tile), j0 = hn::And(y, in_tile);
+  const I end = hn::Set(d, kTileSize);
+  const Mask whole =
+      hn::And(any, hn::And(hn::Lt(hn::Add(i0, side), end), hn::Lt(hn::Add(j0, side), end)));
+  const Mask others = hn::AndNot(whole, any);
+  if (!hn::AllFalse(d, others)) {
+    Lanes rest = lanes;
+    rest.used = others;
+    append_fragments(spots, rest, reach, result);
+  }
+  const I left = hn::Min(i0, hn::Set(d, kTileSize - WindowSpots::kWindow));
+  const I shift = hn::Sub(i0, left);
+  const I tile = hn::Add(hn::Mul(hn::ShiftRight<6>(y), hn::Set(d, spots.screen.tiles_x)),
+                         hn::ShiftRight<6>(x));
+  const I rows = hn::Set(d, (2 * reach + 1) << 12);
+  WindowSpots& to = result.spots;
+  append(hn::Or(rows, hn::Or(hn::ShiftLeft<6>(j0), left)), whole, to.place.data() + to.size);
+  append(hn::Shl(upper, shift), whole, to.upper.data() + to.size);
+  append(hn::Shl(lower, shift), whole, to.lower.data() + to.size);
+  append(lanes.code, whole, to.code.data() + to.size);
+  append(lanes.number, whole, to.number.data() + to.size);
+  append(tile, whole, to.tile.data() + to.size);
+  to.size += hn::CountTrue(d, whole);
+  return any;
+}
+
+// Returns how many spots have pixels.
+//
+// REQUIRES: the result has room for all pixels of the square of the largest reach around each, for
+// a window of each, and for a vector of either.
+std::uint32_t set_up_spots(const SpotsToSetUp& spots, SetUpResult& result) {
+  const Ints d;
+  std::size_t shown = 0;
+  for (std::size_t place = spots.begin; place < spots.end; place += hn::Lanes(d)) {
+    const Lanes lanes = load(spots, place);
+    const std::int32_t reach = reach_of(hn::GetLane(hn::MaxOfLanes(d, lanes.radius)));
+    const bool as_windows = 0 < reach && reach <= kWindowReach && !result.fragments_only;
+    const Mask any = as_windows ? append_windows(spots, lanes, reach, result)
+                                : append_fragments(spots, lanes, reach, result);
     shown += hn::CountTrue(d, any);
   }
-  result.fragments = size;
   return static_cast<std::uint32_t>(shown);
 }
 static_assert(kTileSize == 1 << 6 && kTilePixels == 1 << 12);
@@ -254,6 +336,7 @@ void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetU
   const std::size_t side = 2 * static_cast<std::size_t>(reach_of(radii.largest)) + 1;
   const std::size_t count = cluster.end - cluster.begin;
   reserve_fragments((count + kMostLanes) * side * side + kMostLanes, result);
+  result.spots.reserve(result.spots.size + count + 2 * kMostLanes);
   const std::uint32_t shown = HWY_DYNAMIC_DISPATCH(set_up_spots)(
       {vertices, radii, screen, cluster.clip, cluster.begin, cluster.end, cluster.first_number},
       result);

@@ -126,6 +126,24 @@ struct WindowTriangles {
   }
 };
 
+// Spots of one depth that lie in one tile, within a window of kWindow x kWindow pixels. Grows only.
+struct WindowSpots {
+  static constexpr int kWindow = 8;
+
+  std::vector<std::uint32_t> place;  // of the first pixel: x | y << 6 | rows << 12
+  // Bit 8 * j + i: whether pixel (i, j) of the window is covered; of four rows each.
+  std::vector<std::uint32_t> upper, lower;
+  std::vector<std::uint32_t> code, number;
+  std::vector<std::uint32_t> tile;  // of the frame
+  std::size_t size = 0;             // elements that count
+
+  void reserve(std::size_t count) {
+    if (place.size() >= count) return;
+    for (std::vector<std::uint32_t>* values : {&place, &upper, &lower, &code, &number, &tile})
+      values->resize(2 * count);
+  }
+};
+
 // An entry of a tile is the index of a triangle, with kMasked where it has holes in it.
 inline constexpr std::uint32_t kMasked = 0x80000000U;
 inline constexpr std::uint32_t kIndex = 0x7FFFFFFFU;
@@ -143,6 +161,10 @@ void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& ti
 // As rasterize, of the windows that `which` names; all of them lie in the tile.
 void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
                        VisibilityTile& tile);
+
+// The same, of spots.
+void rasterize_spots(const WindowSpots& spots, std::span<const std::uint32_t> which,
+                     VisibilityTile& tile);
 
 // Calls f(i, j, key) for every pixel of `rect`, at (i, j) of its tile, whose centre the triangle
 // covers.

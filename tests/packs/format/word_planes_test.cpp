@@ -11,16 +11,18 @@ namespace {
 TEST(WordPlanes, AreExactForAnyBits) {
   const unsigned seed = 3;
   std::mt19937 random(seed);
-  for (const std::size_t n : {0U, 1U, 2U, 100U, 2047U, 2048U, 2049U, 5000U}) {
-    for (const std::size_t stride : {1U, 3U}) {
-      std::vector<std::uint32_t> values(n * stride + 2), back(values.size());
+  for (const std::size_t n : {0U, 1U, 2U, 15U, 16U, 17U, 100U, 2047U, 2048U, 2049U, 5000U}) {
+    for (const std::size_t k : {1U, 2U, 3U, 4U}) {
+      std::vector<std::uint32_t> values(n * k), back(n * k + 1, 77);
       for (std::uint32_t& value : values) value = random();
-      if (n > 2) values[0] = 0x80000000U, values[stride] = 0x7FC00001U;
+      if (n > 2) values[0] = 0x80000000U, values[k] = 0x7FC00001U;
       std::vector<char> bytes(7);
-      append_planes(values.data(), n, stride, bytes);
-      ASSERT_EQ(bytes.size(), 7 + 4 * n);
-      read_planes(bytes.data() + 7, n, stride, back.data());
-      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(back[i * stride], values[i * stride]) << seed;
+      for (std::size_t j = 0; j < k; ++j) append_planes(values.data() + j, n, k, bytes);
+      ASSERT_EQ(bytes.size(), 7 + 4 * k * n);
+      read_planes(bytes.data() + 7, n, static_cast<int>(k), back.data());
+      ASSERT_EQ(back.back(), 77U) << "beyond the end of " << n << " of " << k;
+      back.pop_back();
+      ASSERT_EQ(back, values) << n << " of " << k << ", seed " << seed;
     }
   }
 }

@@ -21,7 +21,7 @@ Result of_pack(const packs::PackReader& pack, const scenes::Camera& camera,
                const RenderOptions& options, int ranks = 1, int threads = 1) {
   Result result;
   comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
-    Renderer renderer(pack, pack.scene(), {std::uint64_t{1} << 28, 1});
+    Renderer renderer(pack, pack.scene(), {std::uint64_t{1} << 28});
     Result mine = renderer.render(communicator, camera, options);
     if (communicator.rank() == 0) result = std::move(mine);
   });

@@ -58,7 +58,7 @@ TEST(PackedDrawing, GivesThePictureOfTheSceneHoweverLittleMemoryThereIs) {
     for (const RenderOptions& options : combinations(kind.options)) {
       if (!reads_pages(options) || ++turn % 101 != 0) continue;
       const int ranks = 1 + turn % 4, threads = 1 + turn % 3;
-      const PackMemory memory{turn % 2 == 0 ? 0U : 200000U, turn % 3};
+      const PackMemory memory{turn % 2 == 0 ? 0U : 200000U};
       const Result result = of_pack(pack, random_scene_camera(), options, memory, ranks, threads);
       ASSERT_TRUE(same_bytes(result.picture, expected))
           << kind.name << ": " << name_of(options) << " " << ranks << " x " << threads;
@@ -78,7 +78,7 @@ TEST(PackedDrawing, ReadsOnlyWhatIsInView) {
   RenderOptions options;
   options.width = 160;
   options.height = 120;
-  const PackMemory memory{std::uint64_t{1} << 30, 2};
+  const PackMemory memory{std::uint64_t{1} << 30};
   const auto pages_of = [&](const scenes::Camera& from, int ranks) {
     const Result result = of_pack(pack, from, options, memory, ranks, 1);
     EXPECT_TRUE(same_bytes(result.picture, of_scene(scene, from, options).picture));
@@ -104,14 +104,14 @@ TEST(PackedDrawing, CountsWhatItReads) {
   options.width = 96;
   options.height = 64;
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
-    Renderer renderer(pack, pack.scene(), {std::uint64_t{1} << 30, 0});
+    Renderer renderer(pack, pack.scene(), {std::uint64_t{1} << 30});
     const packs::CacheCounts first =
         renderer.render(communicator, scene.cameras.front(), options).statistics.pack->cache;
     const packs::CacheCounts second =
         renderer.render(communicator, scene.cameras.front(), options).statistics.pack->cache;
     EXPECT_GT(first.bytes_read, 0U);
     EXPECT_EQ(first.pages_read, first.misses);
-    EXPECT_EQ(first.stalls, first.misses);
+    EXPECT_LE(first.stalls, first.misses);
     EXPECT_EQ(second.bytes_read, 0U);
     EXPECT_EQ(second.misses, 0U);
     EXPECT_GT(second.hits, 0U);
@@ -138,7 +138,7 @@ TEST(PackedDrawing, OfADamagedPackEndsAllRanksWithTheSameError) {
   for (const char* strategy : {"sort-last", "sort-first"}) {
     options.strategy = strategy;
     for (const int ranks : {1, 3}) {
-      EXPECT_THROW(of_pack(pack, pack.scene().cameras.front(), options, {0, 2}, ranks, 2),
+      EXPECT_THROW(of_pack(pack, pack.scene().cameras.front(), options, {0}, ranks, 2),
                    files::FileError);
     }
   }
