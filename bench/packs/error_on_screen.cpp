@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
   options.height = height;
   std::map<int, std::size_t> pixels;  // by how far they are displaced
   comm::run_threads(1, threads, [&](comm::Communicator& communicator) {
-    raster::Renderer renderer(pack, scene, {std::uint64_t{cache} << 20, threads}, shader);
+    raster::Renderer renderer(pack, scene, {std::uint64_t{cache} << 20}, shader);
     for (const scenes::Camera& view_camera : scenes::turntable(camera, views)) {
       std::vector<raster::Result> results;
       std::vector<double> seconds;

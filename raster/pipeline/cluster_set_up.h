@@ -6,7 +6,7 @@
 
 #include "raster/pipeline/frame_tiles.h"
 #include "raster/pipeline/set_up.h"
-#include "raster/pipeline/visibility.h"
+#include "raster/pipeline/window_spots.h"
 
 namespace delray::raster {
 

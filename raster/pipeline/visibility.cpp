@@ -224,18 +224,6 @@ void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& ti
   refresh_if_due(tile);
 }
 
-// Blocks that pixels [i0, i1) x [j0, j1) of the tile touch, a bit each.
-HWY_INLINE std::uint32_t blocks_touched(int i0, int i1, int j0, int j1) {
-  const int bx0 = i0 / VisibilityTile::kBlockWidth, bx1 = (i1 - 1) / VisibilityTile::kBlockWidth;
-  const int by0 = j0 / VisibilityTile::kBlockHeight, by1 = (j1 - 1) / VisibilityTile::kBlockHeight;
-  const std::uint32_t row = (2U << bx1) - (1U << bx0);
-  // At most three rows of blocks; not a loop, which would be unrolled for many.
-  const int by = (by0 + by1) / 2;
-  const std::uint32_t touched = row << (by0 * VisibilityTile::kBlocksX) |
-                                row << (by * VisibilityTile::kBlocksX) |
-                                row << (by1 * VisibilityTile::kBlocksX);
-  return touched;
-}
 static_assert(WindowTriangles::kMostRows <= 2 * VisibilityTile::kBlockHeight);
 
 // The lesser of the keys in memory and those of `codes` and `number` stays.
@@ -341,42 +329,6 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
   }
 }
 
-void rasterize_spots(const WindowSpots& spots, std::span<const std::uint32_t> which,
-                     VisibilityTile& tile) {
-  const HWY_CAPPED(std::int64_t, WindowSpots::kWindow) d;
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  const auto bit_of_lane = hn::Shl(hn::Set(d, 1), hn::Iota(d, 0));
-  // Hardly any that is hidden is known to be: to look costs more than to draw.
-  std::uint32_t touched = 0;
-  const auto draw = [&](std::uint32_t k) HWY_ATTR {
-    const std::uint32_t place = spots.place[k];
-    const auto i0 = static_cast<int>(place & 63), j0 = static_cast<int>(place >> 6 & 63);
-    const auto rows = static_cast<int>(place >> 12);
-    const auto key =
-        hn::Set(d, static_cast<std::int64_t>(std::uint64_t{spots.code[k]} << 32 | spots.number[k]));
-    std::uint64_t covered = std::uint64_t{spots.lower[k]} << 32 | spots.upper[k];
-    std::int64_t* keys = tile.key + j0 * kTileSize + i0;
-    for (int j = 0; j < rows; ++j, keys += kTileSize, covered >>= WindowSpots::kWindow) {
-      for (std::uint32_t i = 0; i < WindowSpots::kWindow; i += lanes) {
-        const auto bits = hn::Set(d, static_cast<std::int64_t>(covered >> i));
-        const auto old = hn::LoadU(d, keys + i);
-        const auto mask = hn::TestBit(bits, bit_of_lane);
-        hn::StoreU(hn::IfThenElse(mask, hn::Min(old, key), old), d, keys + i);
-      }
-    }
-    touched |= blocks_touched(i0, i0 + WindowSpots::kWindow, j0, j0 + rows);
-  };
-  // Neighbours in the list mostly overlap, and what was stored across two vectors cannot be loaded
-  // before it has reached the cache: others are drawn in between.
-  constexpr std::size_t kStreams = 8;
-  const std::size_t apart = (which.size() + kStreams - 1) / kStreams;
-  for (std::size_t first = 0; first < apart; ++first)
-    for (std::size_t at = first; at < which.size(); at += apart) draw(which[at]);
-  tile.stale |= touched;
-  tile.since_refresh += static_cast<int>(which.size());
-  refresh_if_due(tile);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raster
 HWY_AFTER_NAMESPACE();
@@ -387,7 +339,7 @@ namespace delray::raster {
 HWY_EXPORT(rasterize);
 HWY_EXPORT(rasterize_fragments);
 HWY_EXPORT(rasterize_windows);
-HWY_EXPORT(rasterize_spots);
+HWY_EXPORT(refresh_if_due);
 
 void VisibilityTile::clear(const geometry::Rect& rect) {
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
@@ -446,9 +398,10 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
   HWY_DYNAMIC_DISPATCH(rasterize_windows)(triangles, which, tile);
 }
 
-void rasterize_spots(const WindowSpots& spots, std::span<const std::uint32_t> which,
-                     VisibilityTile& tile) {
-  HWY_DYNAMIC_DISPATCH(rasterize_spots)(spots, which, tile);
+void note_drawn(std::uint32_t blocks, std::size_t count, VisibilityTile& tile) {
+  tile.stale |= blocks;
+  tile.since_refresh += static_cast<int>(count);
+  HWY_DYNAMIC_DISPATCH(refresh_if_due)(tile);
 }
 
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,

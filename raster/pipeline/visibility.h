@@ -75,6 +75,24 @@ struct VisibilityTile {
   }
 };
 
+// Blocks that pixels [i0, i1) x [j0, j1) of the tile touch, a bit each. REQUIRES: at least one and
+// at most 2 * kBlockHeight rows.
+inline std::uint32_t blocks_touched(int i0, int i1, int j0, int j1) {
+  const int bx0 = i0 / VisibilityTile::kBlockWidth, bx1 = (i1 - 1) / VisibilityTile::kBlockWidth;
+  const int by0 = j0 / VisibilityTile::kBlockHeight, by1 = (j1 - 1) / VisibilityTile::kBlockHeight;
+  const std::uint32_t row = (2U << bx1) - (1U << bx0);
+  // At most three rows of blocks; not a loop, which would be unrolled for many.
+  const int by = (by0 + by1) / 2;
+  const std::uint32_t touched = row << (by0 * VisibilityTile::kBlocksX) |
+                                row << (by * VisibilityTile::kBlocksX) |
+                                row << (by1 * VisibilityTile::kBlocksX);
+  return touched;
+}
+
+// For who has drawn `count` small things into blocks of these bits: notes it, and computes farthest
+// depths anew once that pays.
+void note_drawn(std::uint32_t blocks, std::size_t count, VisibilityTile& tile);
+
 // Triangles of a few pixels that lie in one tile, ready to be drawn: everything that
 // tile_triangle.h computes, for the window of pixels from (x, y) of the tile on, x a
 // multiple of kWindowWidth. A window is of so many times kRowsAtOnce rows, within the tile, of
@@ -126,24 +144,6 @@ struct WindowTriangles {
   }
 };
 
-// Spots of one depth that lie in one tile, within a window of kWindow x kWindow pixels. Grows only.
-struct WindowSpots {
-  static constexpr int kWindow = 8;
-
-  std::vector<std::uint32_t> place;  // of the first pixel: x | y << 6 | rows << 12
-  // Bit 8 * j + i: whether pixel (i, j) of the window is covered; of four rows each.
-  std::vector<std::uint32_t> upper, lower;
-  std::vector<std::uint32_t> code, number;
-  std::vector<std::uint32_t> tile;  // of the frame
-  std::size_t size = 0;             // elements that count
-
-  void reserve(std::size_t count) {
-    if (place.size() >= count) return;
-    for (std::vector<std::uint32_t>* values : {&place, &upper, &lower, &code, &number, &tile})
-      values->resize(2 * count);
-  }
-};
-
 // An entry of a tile is the index of a triangle, with kMasked where it has holes in it.
 inline constexpr std::uint32_t kMasked = 0x80000000U;
 inline constexpr std::uint32_t kIndex = 0x7FFFFFFFU;
@@ -161,10 +161,6 @@ void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& ti
 // As rasterize, of the windows that `which` names; all of them lie in the tile.
 void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
                        VisibilityTile& tile);
-
-// The same, of spots.
-void rasterize_spots(const WindowSpots& spots, std::span<const std::uint32_t> which,
-                     VisibilityTile& tile);
 
 // Calls f(i, j, key) for every pixel of `rect`, at (i, j) of its tile, whose centre the triangle
 // covers.
