@@ -1,5 +1,5 @@
-// An entry for each page, those of pages that are there in a list, under one lock, which nobody has
-// while he makes or frees a page.
+// An entry for each page, those that are there and not held in a list, under one lock, which nobody
+// has while he makes or frees a page.
 //
 // Who needs a page makes it, and there are no threads for it: what is read by one thread and drawn
 // by another goes through memory in between, and threads that sleep and wake for every page cost as
@@ -17,8 +17,6 @@ namespace delray::packs {
 namespace {
 
 constexpr std::size_t kSpares = 16;  // about as many as there are threads that make pages
-// So many of the pages that were used last are looked at for one that nobody holds any more.
-constexpr std::size_t kMostHeld = 64;
 
 }  // namespace
 
@@ -43,16 +41,26 @@ void CacheCounts::operator+=(const CacheCounts& other) {
 PageCache::PageCache(std::uint32_t pages, Make make, BytesOf bytes_of, std::uint64_t limit)
     : make_(std::move(make)), bytes_of_(std::move(bytes_of)), entries_(pages), limit_(limit) {}
 
-std::shared_ptr<const CachedPage> PageCache::get(std::uint32_t page) {
+PageCache::Held PageCache::get(std::uint32_t page) {
   std::unique_lock lock(mutex_);
   Entry& entry = entries_[page];
   ++(entry.page != nullptr ? counts_.hits : counts_.misses);
   // If he who makes it cannot, somebody else may try.
   while (entry.being_made) made_.wait(lock);
-  if (entry.page == nullptr) return make(page, lock);
-  take_out(entry);
+  if (entry.page == nullptr)
+    make(page, lock);
+  else if (entry.holders == 0)
+    take_out(entry);
+  ++entry.holders;
+  return {*this, page, *entry.page};
+}
+
+void PageCache::release(std::uint32_t page) {
+  Dropped dropped;  // freed after the lock
+  const std::lock_guard lock(mutex_);
+  if (--entries_[page].holders > 0) return;
   append(page);
-  return entry.page;
+  dropped = drop_unused();
 }
 
 std::vector<std::uint32_t> PageCache::missing(std::span<const std::uint32_t> pages) const {
@@ -85,7 +93,7 @@ std::uint64_t PageCache::bytes() const {
   return bytes_;
 }
 
-// To the list, as used now.
+// To the list, as given back now.
 void PageCache::append(std::uint32_t page) {
   Entry& entry = entries_[page];
   entry.frame = frame_;
@@ -100,12 +108,11 @@ void PageCache::take_out(const Entry& entry) {
   (entry.after != kNone ? entries_[entry.after].before : most_recent_) = entry.before;
 }
 
-// With the lock, which it gives up meanwhile.
-std::shared_ptr<const CachedPage> PageCache::make(std::uint32_t page,
-                                                  std::unique_lock<std::mutex>& lock) {
+// With the lock, which it gives up meanwhile. The page is not in the list.
+void PageCache::make(std::uint32_t page, std::unique_lock<std::mutex>& lock) {
   Entry& entry = entries_[page];
-  entry.being_made = true;
-  std::shared_ptr<CachedPage> old;
+  entry.being_made = 1;
+  std::unique_ptr<CachedPage> old;
   if (!spare_.empty()) {
     old = std::move(spare_.back());
     spare_.pop_back();
@@ -116,63 +123,45 @@ std::shared_ptr<const CachedPage> PageCache::make(std::uint32_t page,
     made = make_(page, std::move(old));
   } catch (...) {
     lock.lock();
-    entry.being_made = false;
+    entry.being_made = 0;
     made_.notify_all();
     throw;
   }
-  Dropped dropped;  // freed after the lock
+  Dropped dropped;
   lock.lock();
-  entry.being_made = false;
-  entry.page = made.page;
-  append(page);
-  bytes_ += made.page->bytes();
+  entry.being_made = 0;
+  entry.page = std::move(made.page);
+  bytes_ += entry.page->bytes();
   ++counts_.pages_read;
   counts_.bytes_read += bytes_of_(page);
   if (made.waited > 0) {
     ++counts_.stalls;
     counts_.stall_seconds += made.waited;
   }
+  ++entry.holders;  // so that it stays while there is no lock
   dropped = drop_unused();
-  while (!dropped.empty() && spare_.size() < kSpares) {
-    spare_.push_back(std::move(dropped.back()));
-    dropped.pop_back();
+  if (!dropped.empty()) {
+    lock.unlock();
+    dropped.clear();
+    lock.lock();
   }
-  lock.unlock();
+  --entry.holders;
   made_.notify_all();
-  return made.page;
 }
 
-// Unless somebody holds it. Returns whether it is gone.
-bool PageCache::drop(std::uint32_t page, Dropped& dropped) {
+void PageCache::drop(std::uint32_t page, Dropped& dropped) {
   Entry& entry = entries_[page];
-  if (entry.page.use_count() > 1) return false;
-  // Who gave it back did so before what comes now, when its memory is used again: counting up and
-  // down waits for that, looking does not.
-  std::shared_ptr(entry.page).reset();
   bytes_ -= entry.page->bytes();
-  dropped.push_back(std::move(entry.page));
+  (spare_.size() < kSpares ? spare_ : dropped).push_back(std::move(entry.page));
   take_out(entry);
-  return true;
 }
 
+// What does not fit the limit, and nobody holds; some of it is kept for its memory.
 PageCache::Dropped PageCache::drop_unused() {
   Dropped dropped;
-  const auto drop_oldest = [&](auto&& wanted) {
-    for (std::uint32_t page = least_recent_;
-         bytes_ > limit_ && page != kNone && wanted(entries_[page]);) {
-      const std::uint32_t next = entries_[page].after;
-      drop(page, dropped);
-      page = next;
-    }
-  };
-  drop_oldest([&](const Entry& entry) { return entry.frame != frame_; });
-  std::size_t held = 0;
-  for (std::uint32_t page = most_recent_; bytes_ > limit_ && page != kNone && held < kMostHeld;) {
-    const std::uint32_t next = entries_[page].before;
-    if (!drop(page, dropped)) ++held;
-    page = next;
-  }
-  drop_oldest([](const Entry&) { return true; });
+  while (bytes_ > limit_ && least_recent_ != kNone && entries_[least_recent_].frame != frame_)
+    drop(least_recent_, dropped);
+  while (bytes_ > limit_ && most_recent_ != kNone) drop(most_recent_, dropped);
   return dropped;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace delray::packs {
@@ -37,14 +38,40 @@ struct CacheCounts {
 class PageCache {
  public:
   struct Made {
-    std::shared_ptr<CachedPage> page;
+    std::unique_ptr<CachedPage> page;
     double waited = 0;  // seconds for the disk; 0: the system had it in memory
   };
   // Makes a page, by reading it. Called by several threads. `old` is a page that this made before
   // and that nobody has any more, so that its memory can be used again, or null.
-  using Make = std::function<Made(std::uint32_t page, std::shared_ptr<CachedPage> old)>;
+  using Make = std::function<Made(std::uint32_t page, std::unique_ptr<CachedPage> old)>;
   // The bytes of a page in its file, for counting.
   using BytesOf = std::function<std::uint64_t(std::uint32_t page)>;
+
+  // A page that stays in memory while this lives, which the cache outlives.
+  class Held {
+   public:
+    Held() = default;
+    Held(Held&& other) noexcept { *this = std::move(other); }
+    Held& operator=(Held&& other) noexcept {
+      std::swap(cache_, other.cache_);
+      std::swap(number_, other.number_);
+      std::swap(page_, other.page_);
+      return *this;
+    }
+    ~Held() {
+      if (cache_ != nullptr) cache_->release(number_);
+    }
+    const CachedPage& operator*() const { return *page_; }
+
+   private:
+    friend class PageCache;
+    Held(PageCache& cache, std::uint32_t number, const CachedPage& page)
+        : cache_(&cache), number_(number), page_(&page) {}
+
+    PageCache* cache_ = nullptr;
+    std::uint32_t number_ = 0;
+    const CachedPage* page_ = nullptr;
+  };
 
   // Of pages [0, pages). Takes 32 bytes for each of them, besides those that are there.
   //
@@ -53,9 +80,9 @@ class PageCache {
   PageCache(const PageCache&) = delete;
   PageCache& operator=(const PageCache&) = delete;
 
-  // The page, which stays in memory while the pointer does. One that is not there is made by the
-  // calling thread, unless another is about to; throws what making it threw.
-  std::shared_ptr<const CachedPage> get(std::uint32_t page);
+  // The page. One that is not there is made by the calling thread, unless another is about to;
+  // throws what making it threw.
+  Held get(std::uint32_t page);
   // Those of the pages that are neither there nor being made.
   std::vector<std::uint32_t> missing(std::span<const std::uint32_t> pages) const;
   // All pages that are there were not used in this frame.
@@ -68,19 +95,21 @@ class PageCache {
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  // Entries of pages that are there are in a list, by their last use.
+  // Entries of pages that are there and that nobody holds are in a list, by when they were given
+  // back.
   struct Entry {
-    std::shared_ptr<CachedPage> page;
+    std::unique_ptr<CachedPage> page;
     std::uint32_t before = kNone, after = kNone;
-    std::uint32_t frame = 0;  // of the last use
-    bool being_made = false;
+    std::uint32_t frame = 0;  // in which it was given back
+    std::uint32_t holders : 31 = 0, being_made : 1 = 0;
   };
-  using Dropped = std::vector<std::shared_ptr<CachedPage>>;
+  using Dropped = std::vector<std::unique_ptr<CachedPage>>;
 
+  void release(std::uint32_t page);
   void append(std::uint32_t page);
   void take_out(const Entry& entry);
-  std::shared_ptr<const CachedPage> make(std::uint32_t page, std::unique_lock<std::mutex>& lock);
-  bool drop(std::uint32_t page, Dropped& dropped);
+  void make(std::uint32_t page, std::unique_lock<std::mutex>& lock);
+  void drop(std::uint32_t page, Dropped& dropped);
   Dropped drop_unused();
 
   const Make make_;

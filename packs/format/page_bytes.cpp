@@ -3,6 +3,7 @@
 #include "packs/format/page_bytes.h"
 
 #include <algorithm>
+#include <array>
 
 #include "packs/format/bytes.h"
 #include "packs/word_planes.h"
@@ -39,14 +40,28 @@ void read_vectors(ByteReader& from, std::size_t n, std::vector<Vector>& values) 
 }
 
 bool contains(const geometry::Box3& box, std::span<const glm::vec3> positions) {
-  unsigned inside = 1;  // written so that what is not a number is not, and without branches
-  for (const glm::vec3& p : positions) {
-    for (int k = 0; k < 3; ++k) {
-      inside &= static_cast<unsigned>(box.low[k] <= p[k]);
-      inside &= static_cast<unsigned>(p[k] <= box.high[k]);
+  // Written so that what is not a number is not inside, and so that compilers see vectors.
+  constexpr std::size_t kWidth = 12;
+  std::array<float, kWidth> low, high;
+  std::array<std::int32_t, kWidth> inside;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    low[i] = box.low[static_cast<int>(i % 3)];
+    high[i] = box.high[static_cast<int>(i % 3)];
+    inside[i] = -1;
+  }
+  const auto* const values = reinterpret_cast<const float*>(positions.data());
+  const std::size_t count = 3 * positions.size();
+  for (std::size_t first = 0; first + kWidth <= count; first += kWidth) {
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      const float value = values[first + i];
+      inside[i] &= -static_cast<std::int32_t>(low[i] <= value) &
+                   -static_cast<std::int32_t>(value <= high[i]);
     }
   }
-  return inside != 0;
+  for (std::size_t i = count - count % kWidth; i < count; ++i)
+    inside[i % 3] &=
+        -static_cast<std::int32_t>(low[i % 3] <= values[i] && values[i] <= high[i % 3]);
+  return std::ranges::all_of(inside, [](std::int32_t v) { return v != 0; });
 }
 
 void read_clusters(ByteReader& from, const PageRow& row, Page& page) {
@@ -78,14 +93,18 @@ void read_clusters(ByteReader& from, const PageRow& row, Page& page) {
 
 void read_references(ByteReader& from, const PageRow& row, Page& page) {
   const std::span<const char> bytes = from.take(2 * page.vertices.size());
-  bool wrong = false;
-  for (std::size_t i = 0; i < page.vertices.size(); ++i) {
+  const char* const packed = bytes.data();
+  std::uint32_t* const vertices = page.vertices.data();
+  const std::size_t count = page.vertices.size();
+  const std::uint32_t limit = row.vertices;
+  std::uint32_t wrong = 0;
+  for (std::size_t i = 0; i < count; ++i) {
     std::uint16_t vertex = 0;
-    std::memcpy(&vertex, bytes.data() + 2 * i, sizeof vertex);
-    page.vertices[i] = vertex;
-    wrong |= vertex >= row.vertices;
+    std::memcpy(&vertex, packed + 2 * i, sizeof vertex);
+    vertices[i] = vertex;
+    wrong |= limit - 1 - vertex;  // its highest bit, where it is larger
   }
-  if (wrong) from.fail("a vertex of a cluster is none of the page");
+  if (count > 0 && (wrong >> 31) != 0) from.fail("a vertex of a cluster is none of the page");
 }
 
 void read_corners(ByteReader& from, Page& page) {
@@ -103,17 +122,17 @@ void read_corners(ByteReader& from, Page& page) {
 }
 
 void make_triangles(Page& page) {
-  std::size_t triangles = 0;
-  for (const PageCluster& cluster : page.clusters) triangles += cluster.count;
-  page.mesh.triangles.resize(triangles);
+  std::size_t count = 0;
+  for (const PageCluster& cluster : page.clusters) count += cluster.count;
+  page.mesh.triangles.resize(count);
   for (const PageCluster& cluster : page.clusters) {
     const std::uint32_t* const vertices = page.vertices.data() + cluster.first_vertex;
-    const std::uint8_t* const corners = page.corners.data() + cluster.first_corner;
-    const std::uint32_t stride = cluster.corner_stride();
-    for (std::uint32_t t = 0; t < cluster.count; ++t) {
-      page.mesh.triangles[cluster.first + t] = {vertices[corners[t]], vertices[corners[stride + t]],
-                                                vertices[corners[2 * stride + t]]};
-    }
+    const std::size_t stride = cluster.corner_stride();
+    const std::uint8_t* const a = page.corners.data() + cluster.first_corner;
+    const std::uint8_t *const b = a + stride, *const c = b + stride;
+    glm::uvec3* const triangles = page.mesh.triangles.data() + cluster.first;
+    for (std::uint32_t t = 0; t < cluster.count; ++t)
+      triangles[t] = {vertices[a[t]], vertices[b[t]], vertices[c[t]]};
   }
 }
 

@@ -113,7 +113,7 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
 void PackedDrawing::count() { rank_.pack.cache += packed_.cache.counts() - before_; }
 
 void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
-  std::vector<std::shared_ptr<const packs::CachedPage>> pages;
+  std::vector<packs::PageCache::Held> pages;
   pages.reserve(draws.size());
   for (const std::uint32_t draw : draws) pages.push_back(packed_.cache.get(pages_[draw].page));
   const std::lock_guard lock(mutex_);
@@ -132,7 +132,7 @@ void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
 void PackedDrawing::release(std::span<const std::uint32_t> draws) {
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t draw : draws)
-    if (--holders_[draw] == 0) held_[draw].reset();
+    if (--holders_[draw] == 0) held_[draw] = {};
 }
 
 }  // namespace delray::raster

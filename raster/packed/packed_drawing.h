@@ -1,7 +1,6 @@
 // Pages of a pack as a list that is drawn while it is read.
 #pragma once
 
-#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -43,7 +42,7 @@ class PackedDrawing final : public MeshHolder {
   std::mutex mutex_;
   // By draw.
   std::vector<std::uint32_t> holders_;
-  std::vector<std::shared_ptr<const packs::CachedPage>> held_;
+  std::vector<packs::PageCache::Held> held_;
 };
 
 }  // namespace delray::raster

@@ -39,10 +39,9 @@ PackedScene::PackedScene(const packs::PackReader& source, const PackMemory& memo
     : pack(source),
       cache(
           static_cast<std::uint32_t>(source.pages().size()),
-          [&source](std::uint32_t page, std::shared_ptr<packs::CachedPage> old) {
-            auto made = old != nullptr ? std::static_pointer_cast<RasterPage>(std::move(old))
-                                       : std::make_shared<RasterPage>();
-            const double waited = made->read(source, page);
+          [&source](std::uint32_t page, std::unique_ptr<packs::CachedPage> made) {
+            if (made == nullptr) made = std::make_unique<RasterPage>();
+            const double waited = static_cast<RasterPage&>(*made).read(source, page);
             return packs::PageCache::Made{std::move(made), waited};
           },
           [&source](std::uint32_t page) { return source.pages()[page].bytes; },

@@ -110,7 +110,8 @@ TEST(PackedDrawing, CountsWhatItReads) {
     const packs::CacheCounts second =
         renderer.render(communicator, scene.cameras.front(), options).statistics.pack->cache;
     EXPECT_GT(first.bytes_read, 0U);
-    EXPECT_EQ(first.pages_read, first.misses);
+    EXPECT_GT(first.pages_read, 0U);
+    EXPECT_LE(first.pages_read, first.misses);  // some wait for who reads it already
     EXPECT_LE(first.stalls, first.misses);
     EXPECT_EQ(second.bytes_read, 0U);
     EXPECT_EQ(second.misses, 0U);
