@@ -8,7 +8,7 @@
 #define DELRAY_RASTER_PLANE_LANES
 #endif
 
-#include "raster/pipeline/transpose.h"
+#include "raster/shading/transpose.h"
 #include "raster/shading/pixel_triangles.h"
 
 HWY_BEFORE_NAMESPACE();

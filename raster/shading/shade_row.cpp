@@ -21,7 +21,7 @@
 // Highway's own header comes after it.
 #include <hwy/highway.h>
 
-#include "raster/pipeline/transpose.h"
+#include "raster/shading/transpose.h"
 
 #ifndef DELRAY_RASTER_SHADE_ROW
 #define DELRAY_RASTER_SHADE_ROW

@@ -50,8 +50,7 @@ ClusterData decompress_cluster(std::span<const std::byte> message) {
   comm::check_message(packs::decompress(
       {reinterpret_cast<const char*>(compressed.data()), compressed.size()}, planes));
   const std::size_t each = words.size() / kSequences;
-  for (std::size_t k = 0; k < kSequences && each > 0; ++k)
-    packs::read_planes(planes.data() + k * each * kWord, each, kSequences, words.data() + k);
+  packs::read_planes(planes.data(), each, static_cast<int>(kSequences), words.data());
   return unpack_cluster({reinterpret_cast<const std::byte*>(words.data()), size});
 }
 
