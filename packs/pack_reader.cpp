@@ -186,10 +186,15 @@ double PackReader::read(std::uint32_t page, Page& into) const {
 }
 
 void PackReader::will_need(std::span<const std::uint32_t> pages) const {
+  constexpr std::uint64_t kGap = 64 << 10;  // takes no longer to read than to begin anew
   for (std::size_t i = 0; i < pages.size();) {
     const std::uint64_t begin = pages_[pages[i]].offset;
     std::uint64_t end = begin;
-    for (; i < pages.size() && pages_[pages[i]].offset == end; ++i) end += pages_[pages[i]].bytes;
+    for (; i < pages.size(); ++i) {
+      const PageRow& row = pages_[pages[i]];
+      if (row.offset < begin || row.offset > end + kGap) break;
+      end = std::max(end, row.offset + row.bytes);
+    }
     ::posix_fadvise(descriptor_, static_cast<off_t>(begin), static_cast<off_t>(end - begin),
                     POSIX_FADV_WILLNEED);
   }

@@ -50,7 +50,8 @@ class PackReader {
   // Into `into`, whose memory is used again. Returns for how many seconds the disk was waited for;
   // 0: what was read was in the system's memory, or the system does not tell.
   double read(std::uint32_t page, Page& into) const;
-  // Has the system read these pages into its memory; does not wait for it.
+  // Has the system read these pages into its memory, and what little lies between them; does not
+  // wait for it. Ascending ones are read in the fewest pieces.
   void will_need(std::span<const std::uint32_t> pages) const;
 
  private:

@@ -13,8 +13,10 @@
 namespace delray::raster {
 namespace {
 
-constexpr std::size_t kBatchPages = 128;              // drawn at once
-constexpr std::size_t kPagesAhead = 3 * kBatchPages;  // asked for before they are drawn
+constexpr std::size_t kBatchPages = 128;  // drawn at once
+// Asked for at once before they are drawn: so many that of pages at about the same distance some
+// are neighbours in the file.
+constexpr std::size_t kPagesAhead = 32 * kBatchPages;
 
 }  // namespace
 
@@ -80,12 +82,15 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
   std::vector<std::uint32_t> ahead, clusters;
   packed_.cache.begin_frame();
   for (std::size_t at = 0, asked = 0; at < order.size();) {
-    ahead.clear();
-    for (; asked < std::min(at + kPagesAhead, order.size()); ++asked) {
-      const PlacedPage& page = pages_[order[asked]];
-      if (!hides(drawing, page)) ahead.push_back(page.page);
+    if (asked < at + kPagesAhead / 2) {
+      ahead.clear();
+      for (; asked < std::min(at + kPagesAhead, order.size()); ++asked) {
+        const PlacedPage& page = pages_[order[asked]];
+        if (!hides(drawing, page)) ahead.push_back(page.page);
+      }
+      std::ranges::sort(ahead);
+      packed_.pack.will_need(packed_.cache.missing(ahead));
     }
-    packed_.pack.will_need(packed_.cache.missing(ahead));
 
     clusters.clear();
     for (std::size_t drawn = 0; at < order.size() && drawn < kBatchPages; ++at) {
