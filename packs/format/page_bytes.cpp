@@ -3,9 +3,9 @@
 #include "packs/format/page_bytes.h"
 
 #include <algorithm>
-#include <array>
 
 #include "packs/format/bytes.h"
+#include "packs/format/within.h"
 #include "packs/word_planes.h"
 
 namespace delray::packs::internal {
@@ -37,31 +37,6 @@ void read_vectors(ByteReader& from, std::size_t n, std::vector<Vector>& values) 
   if (n == 0) return;
   read_planes(from.take(sizeof(Vector) * n).data(), n, Vector::length(),
               reinterpret_cast<std::uint32_t*>(values.data()));
-}
-
-bool contains(const geometry::Box3& box, std::span<const glm::vec3> positions) {
-  // Written so that what is not a number is not inside, and so that compilers see vectors.
-  constexpr std::size_t kWidth = 12;
-  std::array<float, kWidth> low, high;
-  std::array<std::int32_t, kWidth> inside;
-  for (std::size_t i = 0; i < kWidth; ++i) {
-    low[i] = box.low[static_cast<int>(i % 3)];
-    high[i] = box.high[static_cast<int>(i % 3)];
-    inside[i] = -1;
-  }
-  const auto* const values = reinterpret_cast<const float*>(positions.data());
-  const std::size_t count = 3 * positions.size();
-  for (std::size_t first = 0; first + kWidth <= count; first += kWidth) {
-    for (std::size_t i = 0; i < kWidth; ++i) {
-      const float value = values[first + i];
-      inside[i] &= -static_cast<std::int32_t>(low[i] <= value) &
-                   -static_cast<std::int32_t>(value <= high[i]);
-    }
-  }
-  for (std::size_t i = count - count % kWidth; i < count; ++i)
-    inside[i % 3] &=
-        -static_cast<std::int32_t>(low[i % 3] <= values[i] && values[i] <= high[i % 3]);
-  return std::ranges::all_of(inside, [](std::int32_t v) { return v != 0; });
 }
 
 void read_clusters(ByteReader& from, const PageRow& row, Page& page) {
@@ -187,7 +162,8 @@ void decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh
   read_references(geometry, row, page);
   read_corners(geometry, page);
   read_vectors(geometry, n, page.mesh.positions);
-  if (!contains(row.box, page.mesh.positions)) packed.fail("a vertex is outside of the page's box");
+  if (!are_within(row.box, page.mesh.positions))
+    packed.fail("a vertex is outside of the page's box");
   make_triangles(page);
 
   unpacked.resize(mesh.attributes.bytes() * n);

@@ -153,8 +153,15 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
 }  // namespace
 
 bool are_consecutive(std::span<const std::uint32_t> vertices) {
-  for (std::size_t i = 1; i < vertices.size(); ++i)
-    if (vertices[i] != vertices[0] + i) return false;
+  // A few at a time, without branches.
+  constexpr std::size_t kAtOnce = 16;
+  for (std::size_t first = 0; first < vertices.size(); first += kAtOnce) {
+    std::uint32_t differences = 0;
+    const std::size_t end = std::min(first + kAtOnce, vertices.size());
+    for (std::size_t i = first; i < end; ++i)
+      differences |= vertices[i] ^ (vertices[0] + static_cast<std::uint32_t>(i));
+    if (differences != 0) return false;
+  }
   return true;
 }
 
