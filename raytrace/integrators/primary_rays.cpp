@@ -36,17 +36,28 @@ HWY_INLINE F off_axis(F component, F length) {
   return hn::IfThenElse(hn::Lt(hn::Abs(component), least), least, component);
 }
 
-void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
-                   shading::LaneMask mask, RayGroup& group) {
+// Of the column and the row of blocks that begin at pixel (x, y).
+void primary_step(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
+                  shading::Floats16& right, shading::Floats16& up) {
   const IntTag di;
-  RayPacket& packet = group.packet;
-  const F zero = set(0.0F), scale = set(view.scale);
-  const I none = set(-1);
+  const F scale = set(view.scale);
   for (int i = 0; i < kPacketRays; i += lanes()) {
     const F column = to_float(hn::Load(di, kColumns + i) + set(x)) + load(places.x, i);
     const F row = to_float(hn::Load(di, kRows + i) + set(y)) + load(places.y, i);
-    const F right = (column - set(view.half_width)) / scale;
-    const F up = (row - set(view.half_height)) / scale;
+    put((column - set(view.half_width)) / scale, right.lane + i);
+    put((row - set(view.half_height)) / scale, up.lane + i);
+  }
+}
+
+void primary_block(const scenes::View& view, const PrimaryBlock& block, RayGroup& group) {
+  const IntTag di;
+  const PrimaryPlaces& places = block.places;
+  RayPacket& packet = group.packet;
+  const F zero = set(0.0F);
+  const I none = set(-1);
+  const bool one_origin = !view.orthographic && !(view.lens_radius > 0.0F);
+  for (int i = 0; i < kPacketRays; i += lanes()) {
+    const F right = load(block.right, i), up = load(block.up, i);
     F3 direction = set(view.forward), origin = set(view.eye);
     F3& moved = view.orthographic ? origin : direction;
     moved = moved + set(view.right) * right - set(view.up) * up;
@@ -61,27 +72,31 @@ void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& 
     direction = {off_axis(direction.x, length), off_axis(direction.y, length),
                  off_axis(direction.z, length)};
     const F3 unit = direction * (set(1.0F) / length);
-    put(origin.x, packet.origin_x + i);
-    put(origin.y, packet.origin_y + i);
-    put(origin.z, packet.origin_z + i);
-    put(set(view.near), packet.near + i);
+    if (!(block.again && one_origin)) {
+      put(origin.x, packet.origin_x + i);
+      put(origin.y, packet.origin_y + i);
+      put(origin.z, packet.origin_z + i);
+    }
     put(direction.x, packet.direction_x + i);
     put(direction.y, packet.direction_y + i);
     put(direction.z, packet.direction_z + i);
-    put(zero, packet.time + i);
     put(set(std::numeric_limits<float>::infinity()), packet.far + i);
-    put(none, packet.mask + i);
-    put(set(0), packet.id + i);
-    put(set(0), packet.flags + i);
     put(none, packet.triangle + i);
     put(none, packet.geometry + i);
     put(none, packet.instance + i);
     put(hn::Neg(unit.x), group.view.x.lane + i);
     put(hn::Neg(unit.y), group.view.y.lane + i);
     put(hn::Neg(unit.z), group.view.z.lane + i);
+    hn::Store(hn::VecFromMask(di, hn::RebindMask(di, mask_of(block.mask, i))), di,
+              group.active.ray + i);
+    if (block.again) continue;
+    put(set(view.near), packet.near + i);
+    put(zero, packet.time + i);
+    put(none, packet.mask + i);
+    put(set(0), packet.id + i);
+    put(set(0), packet.flags + i);
     put(set(view.first_width()), group.width.lane + i);
     put(set(view.spread()), group.spread.lane + i);
-    hn::Store(hn::VecFromMask(di, hn::RebindMask(di, mask_of(mask, i))), di, group.active.ray + i);
   }
   group.coherent = true;
   group.misses = false;
@@ -95,10 +110,26 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 
 HWY_EXPORT(primary_block);
+HWY_EXPORT(primary_step);
 
-void set_primary_rays(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
-                      shading::LaneMask mask, RayGroup& group) {
-  HWY_DYNAMIC_DISPATCH(primary_block)(view, x, y, places, mask, group);
+void PrimarySteps::set(const scenes::View& view, const geometry::Rect& pixels,
+                       const PrimaryPlaces& places) {
+  const auto blocks = [](int count) {
+    return static_cast<std::size_t>((count + kBlockSide - 1) / kBlockSide);
+  };
+  right.resize(blocks(pixels.width()));
+  up.resize(blocks(pixels.height()));
+  shading::Floats16 unused;
+  for (std::size_t k = 0; k < std::max(right.size(), up.size()); ++k) {
+    const int from = static_cast<int>(k) * kBlockSide;
+    HWY_DYNAMIC_DISPATCH(primary_step)
+    (view, pixels.x0 + from, pixels.y0 + from, places, k < right.size() ? right[k] : unused,
+     k < up.size() ? up[k] : unused);
+  }
+}
+
+void set_primary_rays(const scenes::View& view, const PrimaryBlock& block, RayGroup& group) {
+  HWY_DYNAMIC_DISPATCH(primary_block)(view, block, group);
 }
 
 }  // namespace delray::raytrace

@@ -1,12 +1,12 @@
 // Primary rays and random numbers of a task, whatever the integrator.
 #include "raytrace/integrators/wavefront_integrator.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <utility>
 
 #include "image/image.h"
-#include "raytrace/integrators/primary_rays.h"
 #include "raytrace/integrators/waiting_rays.h"
 #include "raytrace/sampling/samples.h"
 #include "raytrace/sampling/warp.h"
@@ -57,11 +57,13 @@ void WavefrontIntegrator::enqueue_primary_rays() {
       (positions_ == Positions::random || context_.scattered) && context_.samples > 1;
   PrimaryPlaces places;
   std::size_t block = 0;
+  const geometry::Rect& pixels = task_.pixels;
   for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
     places.set(sample_position(s, context_.samples));
+    if (!jittered) steps_.set(context_.view, pixels, places);
     block = 0;
-    for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
-      for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide, ++block) {
+    for (int y = pixels.y0; y < pixels.y1; y += kBlockSide) {
+      for (int x = pixels.x0; x < pixels.x1; x += kBlockSide, ++block) {
         const auto sample = static_cast<std::uint32_t>(s);
         const auto number = static_cast<std::uint32_t>(block);
         for (int i = 0; jittered && i < kPacketRays; ++i) {
@@ -70,16 +72,24 @@ void WavefrontIntegrator::enqueue_primary_rays() {
         for (int i = 0; lens && i < kPacketRays; ++i) {
           places.set_lens(i, disc_point(sobol_pair(keys(number).key(i), sample, kLens)));
         }
-        const shading::LaneMask mask = chosen(context_, inside(task_.pixels, x, y), x, y);
+        const geometry::Rect here{x, y, x + kBlockSide, y + kBlockSide};
+        if (jittered) steps_.set(context_.view, here, places);
+        const auto step_at = [&](int from, int at) {
+          return jittered ? std::size_t{0} : static_cast<std::size_t>((at - from) / kBlockSide);
+        };
+        const shading::LaneMask mask = chosen(context_, inside(pixels, x, y), x, y);
+        const bool again = next_.rays.size() < primaries_filled_;
         RayGroup& group = next_.rays.add();
-        set_primary_rays(context_.view, x, y, places, mask, group);
-        group.misses =
-            mask == 0 ||
-            geometry::intersection(context_.filled, {x, y, x + kBlockSide, y + kBlockSide}).empty();
+        set_primary_rays(context_.view,
+                         {x, y, places, steps_.right[step_at(pixels.x0, x)],
+                          steps_.up[step_at(pixels.y0, y)], mask, again},
+                         group);
+        group.misses = mask == 0 || geometry::intersection(context_.filled, here).empty();
         rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
       }
     }
   }
+  primaries_filled_ = std::max(primaries_filled_, next_.rays.size());
 }
 
 const PixelKeys& WavefrontIntegrator::keys(std::uint32_t block) {
@@ -117,6 +127,7 @@ void WavefrontIntegrator::clear_for(const Task& task) {
   assert(task.pixels.x0 % kBlockSide == 0 && task.pixels.y0 % kBlockSide == 0);
   task_ = task;
   rays_ = {};
+  keep_primaries(batch_);
   batch_.clear();
   next_.clear();
   samples_.resize(static_cast<std::size_t>(task.blocks()) * static_cast<std::size_t>(task.samples));
@@ -127,15 +138,25 @@ void WavefrontIntegrator::clear_for(const Task& task) {
 
 void WavefrontIntegrator::start(const Task& task) {
   clear_for(task);
+  std::swap(next_, primaries_);
+  next_.clear();
   enqueue_primary_rays();
   begin();
   std::swap(batch_, next_);
+  has_primaries_ = true;
 }
 
 void WavefrontIntegrator::advance() {
   next_.clear();
   shade();
   std::swap(batch_, next_);
+  keep_primaries(next_);
+}
+
+// Nothing but primary rays is put into their groups: `batch` has them, if batch_ had them before.
+void WavefrontIntegrator::keep_primaries(RayBatch& batch) {
+  if (!std::exchange(has_primaries_, false)) return;
+  std::swap(batch, primaries_);
 }
 
 std::vector<std::uint32_t> WavefrontIntegrator::waiting() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/rect.h"
+#include "raytrace/integrators/primary_rays.h"
 #include "raytrace/sampling/light_table.h"
 #include "raytrace/sampling/sampler.h"
 #include "raytrace/scene/ray_batch.h"
@@ -160,9 +161,16 @@ class WavefrontIntegrator {
  private:
   void clear_for(const Task& task);
   void enqueue_primary_rays();
+  void keep_primaries(RayBatch& batch);
   const PixelKeys& keys(std::uint32_t block);
 
   Positions positions_;
+  // Groups of primary rays, the first so many of which were filled; they are in batch_ until it is
+  // shaded.
+  RayBatch primaries_;
+  std::size_t primaries_filled_ = 0;
+  bool has_primaries_ = false;
+  PrimarySteps steps_;
   // Keys of the task's blocks, where they were asked for.
   std::vector<PixelKeys> keys_;
   std::vector<bool> has_keys_;
