@@ -47,10 +47,11 @@ PageCache::Held PageCache::get(std::uint32_t page) {
   ++(entry.page != nullptr ? counts_.hits : counts_.misses);
   // If he who makes it cannot, somebody else may try.
   while (entry.being_made) made_.wait(lock);
-  if (entry.page == nullptr)
+  if (entry.page == nullptr) {
     make(page, lock);
-  else if (entry.holders == 0)
+  } else if (entry.holders == 0) {
     take_out(entry);
+  }
   ++entry.holders;
   return {*this, page, *entry.page};
 }

@@ -7,6 +7,7 @@
 #include "apps/render/ray_frame.h"
 #include "apps/statistics.h"
 #include "comm/collectives.h"
+#include "packs/extent.h"
 #include "parallel/arena.h"
 #include "scenes/generate.h"
 

@@ -142,9 +142,9 @@ TEST(PageCache, MakesAPageOnceForAll) {
   for (const std::uint32_t page : {0U, 1U}) {
     begun = 0;
     go = false;
-    std::vector<std::jthread> threads;
-    for (int k = 0; k < 4; ++k) {
-      threads.emplace_back([&] {
+    std::vector<std::jthread> threads(4);
+    for (std::jthread& thread : threads) {
+      thread = std::jthread([&] {
         try {
           EXPECT_EQ((*cache.get(page)).bytes(), 1U);
         } catch (const std::runtime_error&) {
