@@ -158,7 +158,7 @@ double PackReader::read_and_time(std::uint64_t begin, std::span<char> bytes) con
   const ssize_t got = ::preadv2(descriptor_, &where, 1, static_cast<off_t>(begin), RWF_NOWAIT);
   const std::size_t read = got > 0 ? static_cast<std::size_t>(got) : 0;
   if (read == bytes.size()) return 0;
-  const bool waits = got > 0 || errno == EAGAIN;
+  const bool waits = got > 0 || (got < 0 && errno == EAGAIN);
   const auto start = std::chrono::steady_clock::now();
   read_bytes(begin + read, bytes.subspan(read));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

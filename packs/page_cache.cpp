@@ -11,7 +11,7 @@
 // page that cannot be made is forgotten, so that who asks next tries again.
 #include "packs/page_cache.h"
 
-#include <chrono>
+#include <iterator>
 
 namespace delray::packs {
 namespace {
@@ -82,6 +82,9 @@ void PageCache::set_limit(std::uint64_t limit) {
   const std::lock_guard lock(mutex_);
   limit_ = limit;
   dropped = drop_unused();
+  dropped.insert(dropped.end(), std::make_move_iterator(spare_.begin()),
+                 std::make_move_iterator(spare_.end()));
+  spare_.clear();
 }
 
 CacheCounts PageCache::counts() const {

@@ -73,7 +73,8 @@ class PageCache {
     const CachedPage* page_ = nullptr;
   };
 
-  // Of pages [0, pages). Takes 32 bytes for each of them, besides those that are there.
+  // Of pages [0, pages). Takes 24 bytes for each of them, besides those that are there, and the
+  // memory of up to sixteen that waits for others.
   //
   // REQUIRES: what is passed outlives the cache.
   PageCache(std::uint32_t pages, Make make, BytesOf bytes_of, std::uint64_t limit);
@@ -91,7 +92,7 @@ class PageCache {
   void set_limit(std::uint64_t limit);
 
   CacheCounts counts() const;
-  std::uint64_t bytes() const;  // of all pages in memory now
+  std::uint64_t bytes() const;  // of the pages that are there
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;

@@ -6,13 +6,15 @@
 // wanted is searched for in an interval. A hash grid finds who is near: of cells twice as wide as
 // the radius eight have all of a ball.
 //
-// Degenerate: points at one place are one; where all are, one is left.
+// Degenerate: points at one place are one; where all are, one is left. A radius is no less than
+// what rounding does to places: beside one that is very far away others are as one.
 #include "packs/build/thin_points.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "packs/build/vertices.h"
@@ -28,7 +30,7 @@ class Grid {
     std::vector<std::uint32_t> slots;
     slots.reserve(places.size());
     for (const glm::vec3& place : places) {
-      slots.push_back(slot(cell(place)));
+      slots.push_back(slot(cell(place - low)));
       ++first_[slots.back() + 1];
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -70,19 +72,29 @@ class Grid {
   }
   template <class F>
   void for_each_cell(const glm::vec3& p, F&& f) const {
-    const glm::ivec3 first = cell(p - glm::vec3(radius_));
-    std::array<std::uint32_t, 8> seen;
-    for (int k = 0; k < 8; ++k) {
-      const std::uint32_t s = slot(first + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
-      seen[k] = s;
-      if (first_[s] == first_[s + 1] || std::find(seen.begin(), seen.begin() + k, s) != &seen[k])
-        continue;
-      f(first_[s], first_[s + 1]);
+    // What rounding may have moved places by comes on top, for which there may be a third cell.
+    constexpr float kRounding = 8 * std::numeric_limits<float>::epsilon();
+    const glm::vec3 at = p - low_, reach = glm::vec3(radius_) + glm::abs(at) * kRounding;
+    const glm::ivec3 first = cell(at - reach), last = cell(at + reach);
+    std::array<std::uint32_t, 27> seen;
+    std::size_t count = 0;
+    for (int z = first.z; z <= last.z; ++z) {
+      for (int y = first.y; y <= last.y; ++y) {
+        for (int x = first.x; x <= last.x; ++x) {
+          const std::uint32_t s = slot({x, y, z});
+          const auto end = seen.begin() + static_cast<std::ptrdiff_t>(count);
+          if (first_[s] == first_[s + 1] || std::find(seen.begin(), end, s) != end) continue;
+          if (count == seen.size()) return;  // cannot be: a cell is two radii wide
+          seen[count++] = s;
+          f(first_[s], first_[s + 1]);
+        }
+      }
     }
   }
-  glm::ivec3 cell(const glm::vec3& p) const {
+  // Of a place as seen from low_.
+  glm::ivec3 cell(const glm::vec3& at) const {
     constexpr float kFarthest = 1e9F;
-    return glm::ivec3(glm::min(glm::floor((p - low_) * (0.5F / radius_)), kFarthest));
+    return glm::ivec3(glm::clamp(glm::floor(at * (0.5F / radius_)), -kFarthest, kFarthest));
   }
   std::uint32_t slot(const glm::ivec3& cell) const {
     const auto bits = [](int v, std::uint64_t by) { return static_cast<std::uint32_t>(v) * by; };
@@ -136,22 +148,30 @@ class Thinning {
       left.set_reach(i, reach >= 0 ? reach * reach : -1);
     }
     std::vector<std::uint32_t> ahead;
-    std::vector<bool> covered(places_.size());
+    chosen.whose.assign(places_.size(), scenes::kNone);
     for (std::uint32_t i = 0; i < places_.size(); ++i) {
-      if (covered[i]) continue;
+      if (chosen.whose[i] != scenes::kNone) continue;
       const std::uint32_t best = best_ahead(left, i, radius, ahead);
+      const auto number = static_cast<std::uint32_t>(chosen.points.size());
       chosen.points.push_back(best);
-      left.for_each_near(places_[best], [&](std::uint32_t j, float squared) {
-        if (covered[j] || !left.has_reach(j)) return;
-        const float reach = radius - before_[j];
-        if (squared > reach * reach) return;
-        covered[j] = true;
+      const auto give = [&](std::uint32_t j) {
+        chosen.whose[j] = number;
         left.set_reach(j, -1);
+      };
+      left.for_each_near(places_[best], [&](std::uint32_t j, float squared) {
+        const float reach = radius - before_[j];
+        if (left.has_reach(j) && squared <= reach * reach) give(j);
       });
-      covered[i] = true;
+      give(i);
+      give(best);
     }
-    std::ranges::sort(chosen.points);
-    find_whose(radius, chosen);
+    find_nearer(radius, chosen);
+    return chosen;
+  }
+  // One that all count for.
+  Chosen choose_one() const {
+    Chosen chosen{{0}, std::vector<std::uint32_t>(places_.size(), 0), {}};
+    find_errors(chosen);
     return chosen;
   }
 
@@ -161,10 +181,11 @@ class Thinning {
     constexpr int kTries = 6;
     constexpr float kGrowth = 2, kWanted = 0.97F, kEnough = 0.94F, kCover = 0.5F;
     const float diagonal = glm::length(box_.size());
-    if (!(diagonal > 0)) return choose(1);
     const auto wanted = static_cast<float>(most);
-    float low = 0, high = kCover * diagonal / std::sqrt(wanted);
-    if (!std::isnormal(1 / high)) return choose(diagonal);
+    // Of less than what rounding does to places nothing can be told.
+    const float least = 16 * std::numeric_limits<float>::epsilon() * diagonal;
+    float low = 0, high = std::max(least, kCover * diagonal / std::sqrt(wanted));
+    if (!std::isnormal(high) || !std::isnormal(1 / high)) return choose_one();
     Chosen best = choose(high);
     while (best.points.size() > most && high < diagonal * kGrowth) {
       low = high;
@@ -175,7 +196,7 @@ class Thinning {
     for (int i = 0; i < kTries && (count > wanted || count < kEnough * wanted); ++i) {
       radius *= std::sqrt(count / (kWanted * wanted));
       if (!(radius > low && radius < high)) radius = low > 0 ? std::sqrt(low * high) : high * 0.5F;
-      if (!(radius > 0 && std::isnormal(1 / radius))) break;
+      if (!(radius > least && std::isnormal(1 / radius))) break;
       Chosen tried = choose(radius);
       count = static_cast<float>(tried.points.size());
       if (tried.points.size() > most) {
@@ -211,24 +232,31 @@ class Thinning {
     return best;
   }
 
-  // The nearest of those chosen, and errors.
-  void find_whose(float radius, Chosen& chosen) const {
+  // Points that were chosen later may be nearer.
+  void find_nearer(float radius, Chosen& chosen) const {
     std::vector<glm::vec3> places;
+    places.reserve(chosen.points.size());
     for (const std::uint32_t point : chosen.points) places.push_back(places_[point]);
     const Grid grid(places, box_.low, radius);
-    chosen.errors.assign(places.size(), 0);
     for (std::uint32_t i = 0; i < places_.size(); ++i) {
-      std::uint32_t nearest = scenes::kNone;
-      float least = std::numeric_limits<float>::infinity();
+      std::uint32_t& nearest = chosen.whose[i];
+      const glm::vec3 way = places_[i] - places[nearest];
+      float least = glm::dot(way, way);
       grid.for_each_near(places_[i], [&](std::uint32_t j, float squared) {
         if (squared > least || (squared == least && j > nearest)) return;
         least = squared;
         nearest = j;
       });
-      constexpr float kRounding = 1 + 1e-5F;
-      chosen.whose.push_back(nearest);
-      float& error = chosen.errors[nearest];
-      error = std::max(error, (before_[i] + std::sqrt(least)) * kRounding);
+    }
+    find_errors(chosen);
+  }
+  void find_errors(Chosen& chosen) const {
+    constexpr float kRounding = 1 + 1e-5F;
+    chosen.errors.assign(chosen.points.size(), 0);
+    for (std::uint32_t i = 0; i < places_.size(); ++i) {
+      float& error = chosen.errors[chosen.whose[i]];
+      const float distance = glm::distance(places_[i], places_[chosen.points[chosen.whose[i]]]);
+      error = std::max(error, (before_[i] + distance) * kRounding);
     }
   }
 

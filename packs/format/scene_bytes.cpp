@@ -267,7 +267,7 @@ bool is_finite(const geometry::Box3& box) {
 
 void check_page(const ByteReader& from, std::uint64_t data_end, std::size_t groups,
                 const PageRow& row) {
-  if (row.offset > data_end || row.bytes > data_end - row.offset)
+  if (row.bytes == 0 || row.offset > data_end || row.bytes > data_end - row.offset)
     from.fail("a page is outside of the file");
   const std::uint32_t triangles = row.triangles, clusters = row.clusters;
   if (clusters < 1 || clusters > kPageClusters || triangles < clusters ||

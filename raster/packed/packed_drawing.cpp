@@ -1,6 +1,6 @@
-// Draws batches of pages while threads read those of the next ones (Correa, Klosowski and Silva
-// 2002). Before a page is read, and again before it is drawn, it is left out if what is drawn by
-// then hides it.
+// Draws batches of pages while the system reads those of the next ones (Correa, Klosowski and Silva
+// 2002): before a page is asked for, and again before its batch is drawn, it is left out if what is
+// drawn by then hides it. Who draws pages unpacks them (HeldDraws), so that they are in his cache.
 //
 // Shading comes when everything is drawn, and looks at what is seen only: it holds the pages of a
 // tile, which the cache may have to read again. Degenerate: where nothing is in view nothing is
@@ -84,7 +84,7 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
   for (std::size_t at = 0, asked = 0; at < order.size();) {
     if (asked < at + kPagesAhead / 2) {
       ahead.clear();
-      for (; asked < std::min(at + kPagesAhead, order.size()); ++asked) {
+      for (asked = std::max(asked, at); asked < std::min(at + kPagesAhead, order.size()); ++asked) {
         const PlacedPage& page = pages_[order[asked]];
         if (!hides(drawing, page)) ahead.push_back(page.page);
       }
@@ -135,9 +135,10 @@ void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
 }
 
 void PackedDrawing::release(std::span<const std::uint32_t> draws) {
+  std::vector<packs::PageCache::Held> pages;  // given back after the lock
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t draw : draws)
-    if (--holders_[draw] == 0) held_[draw] = {};
+    if (--holders_[draw] == 0) pages.push_back(std::move(held_[draw]));
 }
 
 }  // namespace delray::raster

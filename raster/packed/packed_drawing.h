@@ -21,8 +21,8 @@ class PackedDrawing final : public MeshHolder {
   // Refers to this. Clusters are numbered in the order of primitives, before anything is read.
   const DrawList& list() const { return list_; }
 
-  // Draws all pages but those that are hidden by then, near ones first: the cache reads pages while
-  // others are drawn. To be called once. Throws FileError.
+  // Draws all pages but those that are hidden by then, near ones first. To be called
+  // once. Throws FileError.
   void draw(RegionDrawing& drawing);
   // Adds what the frame took from the cache to the rank's counts, once it is finished.
   void count();

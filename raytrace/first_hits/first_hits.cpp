@@ -189,7 +189,7 @@ double drawn_seconds(std::span<const std::vector<SeenTriangle>> seen,
   constexpr std::size_t kStep = 8;
   for (const std::vector<SeenTriangle>& some : seen) {
     if (some.empty()) continue;
-    int squares_here = 0, blocks_here = 0;
+    std::int64_t squares_here = 0, blocks_here = 0;
     for (std::size_t i = 0; i < some.size(); i += kStep) {
       const SeenTriangle& t = some[i];
       squares_here += (1 + (t.x1 - 1) / kBinBlocks - t.x0 / kBinBlocks) *
@@ -198,8 +198,8 @@ double drawn_seconds(std::span<const std::vector<SeenTriangle>> seen,
     }
     const std::size_t looked_at = (some.size() + kStep - 1) / kStep;
     const double weight = static_cast<double>(some.size()) / static_cast<double>(looked_at);
-    squares += weight * squares_here;
-    blocks += weight * blocks_here;
+    squares += weight * static_cast<double>(squares_here);
+    blocks += weight * static_cast<double>(blocks_here);
   }
   return kLookSeconds * looked + kSortSeconds * squares +
          passes * (kSetUpSeconds * squares + kTestSeconds * blocks);

@@ -27,7 +27,7 @@ void read_page(std::span<const char> bytes) {
   const auto flags = static_cast<std::uint8_t>(bytes[7]);
   mesh.attributes = {(flags & 1) != 0, (flags & 2) != 0, (flags & 4) != 0, (flags & 8) != 0,
                      (flags & 16) != 0};
-  Page page;
+  static thread_local Page page;  // whose memory is used again
   internal::decode(bytes.subspan(kCounts), row, mesh, "fuzz", "page", page);
   for (const glm::uvec3& t : page.mesh.triangles) {
     for (int k = 0; k < 3; ++k)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 namespace delray::packs::internal {
 namespace {
@@ -86,6 +87,28 @@ TEST(ThinPoints, CoversWithFew) {
   EXPECT_LT(static_cast<float>(few.mesh.positions.size()) * few.errors.largest *
                 few.errors.largest / area,
             0.6F);
+}
+
+// A scan with a stray return: rounding there is not small beside the distances of the others.
+TEST(ThinPoints, BesideOneFarAwayAreNearToOneThatStays) {
+  for (const float far : {1e3F, 1.5e5F, 2e5F, 7e6F, 1e8F, 1e18F, 1e30F}) {
+    scenes::Mesh mesh = points_on_a_surface(3000, 17);
+    mesh.positions[1234] = glm::vec3(-far);
+    const ThinnedPoints half = thin_points({mesh}, 1500);
+    EXPECT_LE(half.mesh.positions.size(), 1500U) << far;
+    EXPECT_LE(largest_distance(mesh, {}, half.mesh), half.errors.largest * (1 + 1e-5F)) << far;
+  }
+}
+
+TEST(ThinPoints, StayOnceWhateverTheirErrorWasBefore) {
+  const scenes::Mesh mesh = points_on_a_surface(4000, 23);
+  std::vector<float> before(4000, 0);
+  for (std::size_t i = 0; i < before.size(); i += 9) before[i] = 0.2F;
+  const ThinnedPoints half = thin_points({mesh, before}, 2000);
+  std::set<float> numbers;
+  for (const glm::vec4& colour : half.mesh.colours) numbers.insert(colour.z);
+  EXPECT_EQ(numbers.size(), half.mesh.colours.size());
+  EXPECT_LE(largest_distance(mesh, before, half.mesh), half.errors.largest);
 }
 
 TEST(ThinPoints, OfOnePlaceLeavesOne) {
