@@ -32,8 +32,9 @@ struct PackOptions {
 };
 
 void pack_scene(const PackOptions& options, parallel::Progress* progress) {
+  const packs::WriteOptions write{!options.exact_only, progress};
   if (is_surface_in_pieces(options.scene)) {
-    pack_folder(options.scene, options.output, {.levels = !options.exact_only}, progress);
+    pack_folder(options.scene, options.output, write, progress);
     return;
   }
   if (is_cloud(options.scene)) {
@@ -41,13 +42,13 @@ void pack_scene(const PackOptions& options, parallel::Progress* progress) {
     for (const std::filesystem::path& path : find_input_files(options.scene.file).paths)
       files.push_back(path.string());
     refuse_overwriting({{"-o", options.output}, {"--stats", options.statistics}}, files);
-    pack_points(options.scene, options.output, {.levels = !options.exact_only}, progress);
+    pack_points(options.scene, options.output, write, progress);
     return;
   }
   scenes::Scene scene = load_scene(options.scene, progress);
   refuse_overwriting({{"-o", options.output}, {"--stats", options.statistics}}, scene.files);
   scenes::complete_surfaces(scene);
-  packs::write_pack(options.output, scene, {.levels = !options.exact_only});
+  packs::write_pack(options.output, scene, write);
 }
 
 Json statistics_of(const PackOptions& options) {

@@ -84,6 +84,9 @@ void PackReader::open(std::uint64_t bytes, const files::MemoryBudget& memory) {
     fail("the pack is of version " + std::to_string(version) + ", of which only " +
          std::to_string(kVersion) + " is known: pack its scene again");
   }
+  std::uint32_t nothing = 0;
+  std::memcpy(&nothing, start.data() + sizeof kMagic + sizeof version, sizeof nothing);
+  if (nothing != 0) fail("the pack is damaged: its header");
   std::vector<char> end(internal::kTrailerBytes);
   read_bytes(bytes - end.size(), end);
   const internal::Trailer trailer =

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "packs/page.h"
+#include "parallel/progress.h"
 #include "scenes/scene.h"
 
 namespace delray::packs {
@@ -18,6 +19,9 @@ inline constexpr std::uint32_t kVersion = 4;
 // What is written besides what was given.
 struct WriteOptions {
   bool levels = true;  // coarser ones, for pictures with a bound of error
+  // Told how far the levels of each mesh are, which take longest. Once it is asked to stop, what
+  // appends throws parallel::Interrupted, and no file is left.
+  parallel::Progress* progress = nullptr;
 };
 
 // A file that appears whole or not at all. Besides what it is given it needs some pages, and a row

@@ -23,8 +23,8 @@ float widening_of(const RankContext& rank, const PackedScene& packed, const scen
                   std::uint32_t page) {
   const std::uint32_t group = packed.pack.pages()[page].made_of;
   if (mesh.has_triangles() || group == packs::kNoGroup || !(rank.options.error > 0)) return 0;
-  return mesh.shape.in_pixels ? static_cast<float>(rank.options.error)
-                              : packed.pack.groups()[group].error;
+  const float error = packed.pack.groups()[group].error;
+  return mesh.shape.in_pixels && error > 0 ? static_cast<float>(rank.options.error) : error;
 }
 
 std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene& packed) {
