@@ -73,7 +73,10 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
   while (scratch_.tile_memory.size() < scratch_.workers.size())
     scratch_.tile_memory.push_back(std::make_unique<TileMemory>());
   // The triangles of another drawing have the same numbers.
-  for (const auto& memory : scratch_.tile_memory) memory->seen.clear();
+  for (const auto& memory : scratch_.tile_memory) {
+    memory->seen.clear();
+    memory->seen_in.clear();
+  }
   if (task.options.shade != Shade::immediate) return;
   const auto pixels =
       static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
@@ -169,17 +172,17 @@ void RegionDrawing::find_large(int tile, std::vector<std::uint32_t>& draws) cons
   }
 }
 
-// The draws of all that is seen in the tile, or through it. By draw: the tile it was last seen in.
-void RegionDrawing::find_seen(const TileJob& job, const VisibilityTile* tile,
-                              const TileMemory& memory, std::vector<int>& seen_in,
+// The draws of all that is seen in the tile, or through it.
+void RegionDrawing::find_seen(const TileJob& job, const VisibilityTile* tile, TileMemory& memory,
                               std::vector<std::uint32_t>& draws) const {
   draws.clear();
+  memory.seen_in.resize(task_.list.draws.size(), -1);
   std::uint32_t last = kNothing;
   const auto add = [&](std::uint32_t number) {
     if (number == kNothing || number >> kClusterBits == last) return;
     last = number >> kClusterBits;
     const std::uint32_t draw = task_.list.clusters[last].draw;
-    if (std::exchange(seen_in[draw], job.tile) != job.tile) draws.push_back(draw);
+    if (std::exchange(memory.seen_in[draw], job.tile) != job.tile) draws.push_back(draw);
   };
   for (const geometry::Rect& rect : tiles_.rects_of(job)) {
     for (int y = rect.y0; y < rect.y1 && tile != nullptr; ++y) {
@@ -202,7 +205,6 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
     TileMemory& mine = *scratch_.tile_memory[worker];
     MeshHolder* const holder = task_.list.holder;
     std::vector<std::uint32_t> draws;
-    std::vector<int> seen_in(holder != nullptr ? task_.list.draws.size() : 0, -1);
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
@@ -232,7 +234,7 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
                           static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
                     : nullptr;
       TileView view(frame_->shading(), tile, colours, mine);
-      if (holder != nullptr) find_seen(jobs[k], tile, mine, seen_in, draws);
+      if (holder != nullptr) find_seen(jobs[k], tile, mine, draws);
       {
         const HeldDraws held(holder, draws);
         finish_tile(tiles_.rects_of(jobs[k]), view);

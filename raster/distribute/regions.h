@@ -109,8 +109,8 @@ class RegionDrawing {
                 const PreparedFrame* frame, Scratch& scratch);
   void end_drawing_into(RegionCounts& counts);
   void find_large(int tile, std::vector<std::uint32_t>& draws) const;
-  void find_seen(const TileJob& job, const VisibilityTile* tile, const TileMemory& memory,
-                 std::vector<int>& seen_in, std::vector<std::uint32_t>& draws) const;
+  void find_seen(const TileJob& job, const VisibilityTile* tile, TileMemory& memory,
+                 std::vector<std::uint32_t>& draws) const;
   void drop_hidden(int tile, VisibilityTile& visibility) const;
   void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
 

@@ -8,8 +8,8 @@
 #define DELRAY_RASTER_PLANE_LANES
 #endif
 
-#include "raster/shading/transpose.h"
 #include "raster/shading/pixel_triangles.h"
+#include "raster/shading/transpose.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::raster {

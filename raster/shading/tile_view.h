@@ -31,6 +31,7 @@ struct TileMemory {
   std::vector<BlendedFragment> blended;
   std::vector<composite::Fragment> fragments;
   std::vector<std::int64_t> keys;
+  std::vector<int> seen_in;  // by draw that has a holder: the last tile that showed it
   // For for_each_surface.
   std::vector<SurfaceSeen> surfaces;
   std::vector<PixelSurfaces> pixels;

@@ -74,22 +74,19 @@ void WavefrontIntegrator::enqueue_primary_rays() {
         }
         const geometry::Rect here{x, y, x + kBlockSide, y + kBlockSide};
         if (jittered) steps_.set(context_.view, here, places);
-        const auto step_at = [&](int from, int at) {
-          return jittered ? std::size_t{0} : static_cast<std::size_t>((at - from) / kBlockSide);
-        };
+        const auto column = static_cast<std::size_t>(jittered ? 0 : (x - pixels.x0) / kBlockSide);
+        const auto row = static_cast<std::size_t>(jittered ? 0 : (y - pixels.y0) / kBlockSide);
         const shading::LaneMask mask = chosen(context_, inside(pixels, x, y), x, y);
-        const bool again = next_.rays.size() < primaries_filled_;
-        RayGroup& group = next_.rays.add();
+        const bool again = primaries_.rays.size() < primaries_filled_;
+        RayGroup& group = primaries_.rays.add();
         set_primary_rays(context_.view,
-                         {x, y, places, steps_.right[step_at(pixels.x0, x)],
-                          steps_.up[step_at(pixels.y0, y)], mask, again},
-                         group);
+                         {x, y, places, steps_.right[column], steps_.up[row], mask, again}, group);
         group.misses = mask == 0 || geometry::intersection(context_.filled, here).empty();
         rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
       }
     }
   }
-  primaries_filled_ = std::max(primaries_filled_, next_.rays.size());
+  primaries_filled_ = std::max(primaries_filled_, primaries_.rays.size());
 }
 
 const PixelKeys& WavefrontIntegrator::keys(std::uint32_t block) {
@@ -138,9 +135,9 @@ void WavefrontIntegrator::clear_for(const Task& task) {
 
 void WavefrontIntegrator::start(const Task& task) {
   clear_for(task);
-  std::swap(next_, primaries_);
-  next_.clear();
+  primaries_.clear();
   enqueue_primary_rays();
+  std::swap(next_, primaries_);
   begin();
   std::swap(batch_, next_);
   has_primaries_ = true;

@@ -188,6 +188,34 @@ TEST(PackedError, IsTheSameInAWindow) {
   }
 }
 
+// What is left out of the first level was at the same places, far from each other.
+TEST(PackedError, OfPointsThatStandForNoOthersIsNone) {
+  const tests::TemporaryFolder folder;
+  std::mt19937 random(20261128);
+  std::uniform_real_distribution<float> both(-1, 1);
+  scenes::Scene scene;
+  scenes::Mesh& mesh = scene.meshes.emplace_back();
+  for (int i = 0; i < 100; ++i) {
+    const glm::vec3 place(both(random), 0, both(random));
+    for (int k = 0; k < 60; ++k) mesh.positions.push_back(place);
+  }
+  scene.instances.push_back({});
+  scene.materials.emplace_back();
+  scenes::make_points(mesh, {scenes::Shape::Kind::point, true, 2.0F});
+  packs::write_pack(folder / "a.pack", scene);
+  const packs::PackReader pack(folder / "a.pack");
+  RenderOptions options;
+  options.width = 100;
+  options.height = 75;
+  scenes::Camera camera;
+  camera.eye = {0.2F, 1.5F, 1.7F};
+  const Result exact = of_pack(pack, camera, options);
+  options.error = 0.5;
+  const Result coarse = of_pack(pack, camera, options);
+  EXPECT_EQ(coarse.statistics.pack->levels[0], 0U);
+  EXPECT_TRUE(same_bytes(coarse.picture, exact.picture));
+}
+
 TEST(PackedError, OfPointsLeavesNoGaps) {
   const tests::TemporaryFolder folder;
   std::mt19937 random(20261129);
