@@ -10,6 +10,7 @@
 #endif
 
 #include <hwy/highway.h>
+#include <cstring>
 
 #include "shading/arithmetic.h"
 #include "shading/points.h"
@@ -161,8 +162,9 @@ HWY_INLINE M mask_of(LaneMask mask, int i) {
 HWY_INLINE LaneMask bits_of(M mask, int i) {
   HWY_ALIGN std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(FloatTag(), mask, bytes);
-  const LaneMask bits = bytes[0] | static_cast<LaneMask>(bytes[1]) << 8;
-  return bits << i;
+  std::uint16_t bits;
+  std::memcpy(&bits, bytes, sizeof(bits));
+  return static_cast<LaneMask>(bits) << i;
 }
 
 // Masked stores are very slow on some machines, and nobody else writes to the block.

@@ -112,6 +112,69 @@ HWY_INLINE shading::LaneMask find_boxes(const TriangleLanes& t, const SeenFrom& 
   return bits_of(known, i);
 }
 
+// Squares of triangles, side by side.
+struct SquareLanes {
+  static constexpr int kMost = (4 + 1) * kPacketRays;
+  HWY_ALIGN std::int32_t square[kMost], triangle[kMost], blocks[kMost];
+  HWY_ALIGN float nearest[kMost];
+  int size = 0;
+};
+
+// Appends the squares of those of lanes i, i + 1, ... that lie in no more than two columns and two
+// rows of them; lane 0 is triangle `first`. Returns those lanes. Without branches, as it cannot be
+// foreseen how many squares a triangle lies in.
+HWY_INLINE shading::LaneMask put_squares(const Boxes& boxes, shading::LaneMask seen, int i,
+                                         std::uint32_t first, std::int32_t columns,
+                                         SquareLanes& to) {
+  static_assert(kBinBlocks == 4 && kSquareBlocks == 16);
+  const IntTag d;
+  const I zero = hn::Zero(d), one = hn::Set(d, 1), side = hn::Set(d, kBinBlocks);
+  const I x0 = hn::Load(d, boxes.x0 + i), y0 = hn::Load(d, boxes.y0 + i);
+  const I x1 = hn::Load(d, boxes.x1 + i), y1 = hn::Load(d, boxes.y1 + i);
+  const I left = hn::ShiftRight<2>(x0), right = hn::ShiftRight<2>(x1 - one);
+  const I top = hn::ShiftRight<2>(y0), bottom = hn::ShiftRight<2>(y1 - one);
+  const auto many = hn::Or(hn::Gt(right - left, one), hn::Gt(bottom - top, one));
+  const auto few = hn::AndNot(many, hn::RebindMask(d, mask_of(seen, i)));
+  const I triangle = hn::Iota(d, static_cast<std::int32_t>(first) + i);
+  const F nearest = load(boxes.nearest, i);
+  for (int s = 0; s < 4; ++s) {
+    auto its = few;
+    if (s % 2 == 1) its = hn::And(its, hn::Gt(right, left));
+    if (s / 2 == 1) its = hn::And(its, hn::Gt(bottom, top));
+    const I column = left + hn::Set(d, s % 2), row = top + hn::Set(d, s / 2);
+    const I first_x = hn::ShiftLeft<2>(column), first_y = hn::ShiftLeft<2>(row);
+    const I low_x = hn::Max(x0 - first_x, zero), high_x = hn::Min(x1 - first_x, side);
+    const I low_y = hn::Max(y0 - first_y, zero), high_y = hn::Min(y1 - first_y, side);
+    // A bit for the first block of each row, times the bits of a row.
+    const auto between = [&](I low, I high) { return hn::Shl(one, high) - hn::Shl(one, low); };
+    const I rows = hn::Set(d, 0x1111) & between(hn::ShiftLeft<2>(low_y), hn::ShiftLeft<2>(high_y));
+    const I count = (high_x - low_x) * (high_y - low_y);
+    const I blocks = rows * between(low_x, high_x) + hn::ShiftLeft<kSquareBlocks>(count);
+    const int n = to.size;
+    hn::StoreU(hn::Compress(row * hn::Set(d, columns) + column, its), d, to.square + n);
+    hn::StoreU(hn::Compress(triangle, its), d, to.triangle + n);
+    hn::StoreU(hn::Compress(nearest, hn::RebindMask(FloatTag(), its)), FloatTag(), to.nearest + n);
+    hn::StoreU(hn::Compress(blocks, its), d, to.blocks + n);
+    to.size += static_cast<int>(hn::CountTrue(d, its));
+  }
+  return bits_of(hn::RebindMask(FloatTag(), few), i);
+}
+
+void append(const SquareLanes& from, std::vector<TriangleInSquare>& to) {
+  static_assert(sizeof(TriangleInSquare) == 16);
+  const IntTag d;
+  const std::size_t before = to.size(), size = static_cast<std::size_t>(from.size);
+  const auto step = static_cast<std::size_t>(lanes());
+  to.resize(before + (size + step - 1) / step * step);
+  for (std::size_t i = 0; i < size; i += step) {
+    hn::StoreInterleaved4(hn::Load(d, from.square + i), hn::Load(d, from.triangle + i),
+                          hn::BitCast(d, hn::Load(FloatTag(), from.nearest + i)),
+                          hn::Load(d, from.blocks + i), d,
+                          reinterpret_cast<std::int32_t*>(to.data() + before + i));
+  }
+  to.resize(before + size);
+}
+
 // Lanes that can be hit at all, and those of them that may be hit outside of their boxes.
 struct SeenLanes {
   shading::LaneMask seen = 0, beyond = 0;
@@ -141,36 +204,50 @@ std::array<glm::vec3, 3> corners_of(const CornerLanes& corners, int k) {
   return result;
 }
 
-void find_seen_of(const GeometryInstance& instance, std::uint32_t number, const SeenFrom& from,
-                  std::uint32_t first, std::uint32_t last, std::vector<SeenTriangle>& seen) {
+void find_seen_of(const GeometryInstance& instance, const SeenFrom& from, std::uint32_t first,
+                  std::uint32_t last, SeenTriangles& seen) {
   const FlushToZero flush;
   CornerLanes corners;
   for (int k = 0; k < kPacketRays; ++k) clear_corners(k, corners);
   Boxes boxes;
-  seen.reserve(seen.size() + last - first);
+  seen.in_squares.reserve(last - first);
+  const int columns = squares_along(from.window.width());
+  F nearest = set(seen.nearest);
   for (std::uint32_t begin = first; begin < last; begin += kPacketRays) {
     const std::uint32_t count = std::min<std::uint32_t>(kPacketRays, last - begin);
     for (std::uint32_t k = 0; k < count; ++k) {
       set_corners(instance.positions, instance.mesh->triangles[begin + k], static_cast<int>(k),
                   corners);
     }
-    const SeenLanes found = find_boxes_of(corners, from, boxes);
-    for (shading::LaneMask rest = found.seen & ((1U << count) - 1U); rest != 0; rest &= rest - 1) {
+    SeenLanes found = find_boxes_of(corners, from, boxes);
+    found.seen &= (1U << count) - 1U;
+    const shading::LaneMask boxed = found.seen & ~found.beyond & boxes.within;
+    shading::LaneMask few = 0;
+    SquareLanes squares;
+    for (int i = 0; i < kPacketRays; i += lanes()) {
+      nearest =
+          hn::IfThenElse(mask_of(boxed, i), hn::Min(nearest, load(boxes.nearest, i)), nearest);
+      few |= put_squares(boxes, boxed, i, begin, columns, squares);
+    }
+    append(squares, seen.in_squares);
+    for (shading::LaneMask rest = (boxed | (found.seen & found.beyond)) & ~few; rest != 0;
+         rest &= rest - 1) {
       const int k = std::countr_zero(rest);
-      SeenTriangle triangle{number, begin + static_cast<std::uint32_t>(k)};
+      WideTriangle triangle{begin + static_cast<std::uint32_t>(k)};
       if ((found.beyond >> k & 1) != 0) {
-        find_strip(corners_of(corners, k), from, triangle, seen);
+        nearest = set(0.0F);
+        find_strip(corners_of(corners, k), from, triangle, seen.wide);
         continue;
       }
-      if ((boxes.within >> k & 1) == 0) continue;
       triangle.nearest = boxes.nearest[k];
       triangle.x0 = static_cast<std::uint16_t>(boxes.x0[k]);
       triangle.y0 = static_cast<std::uint16_t>(boxes.y0[k]);
       triangle.x1 = static_cast<std::uint16_t>(boxes.x1[k]);
       triangle.y1 = static_cast<std::uint16_t>(boxes.y1[k]);
-      seen.push_back(triangle);
+      seen.wide.push_back(triangle);
     }
   }
+  seen.nearest = hn::GetLane(hn::MinOfLanes(FloatTag(), nearest));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -223,11 +300,13 @@ SeenFrom seen_from(const RaySpace& space, const SeenWindow& window) {
 
 }  // namespace
 
-void find_seen(const GeometryInstance& instance, std::uint32_t number, const RaySpace& space,
-               const SeenWindow& window, std::uint32_t first, std::uint32_t last,
-               std::vector<SeenTriangle>& seen) {
-  HWY_DYNAMIC_DISPATCH(find_seen_of)
-  (instance, number, seen_from(space, window), first, last, seen);
+SeenTriangles find_seen(const GeometryInstance& instance, std::uint32_t number,
+                        const RaySpace& space, const SeenWindow& window, std::uint32_t first,
+                        std::uint32_t last) {
+  SeenTriangles seen;
+  seen.instance = number;
+  HWY_DYNAMIC_DISPATCH(find_seen_of)(instance, seen_from(space, window), first, last, seen);
+  return seen;
 }
 
 }  // namespace delray::raytrace

@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kTrianglesPerPart = 512;
+constexpr std::uint32_t kTrianglesPerPart = 256;
 
 // Seconds of a core: to look at a triangle, to sort it into a square, to set it up there, to test a
 // block. Measured on a core with vectors of sixteen floats.
@@ -182,44 +182,41 @@ double traced_seconds(const Tracer& tracer, const SeenWindow& window) {
 
 // Seconds of a core that it takes to look at parts and to draw what is seen of them, as far as some
 // of the triangles tell: neighbours are alike.
-double drawn_seconds(std::span<const std::vector<SeenTriangle>> seen,
-                     std::span<const MeshPart> parts, double passes) {
+double drawn_seconds(std::span<const SeenTriangles> seen, std::span<const MeshPart> parts,
+                     double passes) {
   double looked = 0, squares = 0, blocks = 0;
   for (const MeshPart& part : parts) looked += part.last - part.first;
   constexpr std::size_t kStep = 8;
-  for (const std::vector<SeenTriangle>& some : seen) {
-    if (some.empty()) continue;
-    std::int64_t squares_here = 0, blocks_here = 0;
-    for (std::size_t i = 0; i < some.size(); i += kStep) {
-      const SeenTriangle& t = some[i];
-      squares_here += (1 + (t.x1 - 1) / kBinBlocks - t.x0 / kBinBlocks) *
-                      (1 + (t.y1 - 1) / kBinBlocks - t.y0 / kBinBlocks);
-      blocks_here += t.blocks();
+  const auto along = [](int first, int last) {
+    return 1 + (last - 1) / kBinBlocks - first / kBinBlocks;
+  };
+  for (const SeenTriangles& some : seen) {
+    squares += static_cast<double>(some.in_squares.size());
+    for (std::size_t i = 0; i < some.in_squares.size(); i += kStep)
+      blocks += kStep * count(some.in_squares[i].blocks);
+    for (const WideTriangle& t : some.wide) {
+      squares += along(t.x0, t.x1) * along(t.y0, t.y1);
+      blocks += (t.x1 - t.x0) * (t.y1 - t.y0);
     }
-    const std::size_t looked_at = (some.size() + kStep - 1) / kStep;
-    const double weight = static_cast<double>(some.size()) / static_cast<double>(looked_at);
-    squares += weight * static_cast<double>(squares_here);
-    blocks += weight * static_cast<double>(blocks_here);
   }
   return kLookSeconds * looked + kSortSeconds * squares +
          passes * (kSetUpSeconds * squares + kTestSeconds * blocks);
 }
 
-std::vector<std::vector<SeenTriangle>> find_all(const Tracer& tracer, const SeenWindow& window,
-                                                const RaySpaces& spaces,
-                                                std::span<const MeshPart> parts) {
-  std::vector<std::vector<SeenTriangle>> seen(parts.size());
+std::vector<SeenTriangles> find_all(const Tracer& tracer, const SeenWindow& window,
+                                    const RaySpaces& spaces, std::span<const MeshPart> parts) {
+  std::vector<SeenTriangles> seen(parts.size());
   parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) {
     const MeshPart& part = parts[i];
-    find_seen(tracer.instances[part.instance], part.instance, spaces.of(part.instance), window,
-              part.first, part.last, seen[i]);
+    seen[i] = find_seen(tracer.instances[part.instance], part.instance, spaces.of(part.instance),
+                        window, part.first, part.last);
   });
   return seen;
 }
 
 std::string why_unknown(const Tracer& tracer, const SeenWindow& window) {
   const scenes::View& view = window.view;
-  constexpr int kMostBlocks = 65534;  // SeenTriangle
+  constexpr int kMostBlocks = 65534;  // WideTriangle
   if (std::max(window.pixels.width(), window.pixels.height()) > kBlockSide * kMostBlocks)
     return "the picture is too large";
   if (view.orthographic) return "rays are parallel";
@@ -280,9 +277,9 @@ FirstHits::Made FirstHits::make(const Tracer& tracer, const SeenWindow& window, 
     const double of_all = static_cast<double>(parts.size()) / static_cast<double>(some.size());
     if (!pays(of_all * drawn_seconds(find(some), some, passes))) return rest();
   }
-  std::vector<std::vector<SeenTriangle>> seen = find(parts);
+  const std::vector<SeenTriangles> seen = find(parts);
   if (!pays(drawn_seconds(seen, parts, passes))) return rest();
-  made->bins_ = bin_triangles(std::move(seen), window.pixels);
+  made->bins_ = bin_triangles(seen, window.pixels);
   return {std::move(made), ""};
 }
 

@@ -67,7 +67,7 @@ Strip strip_of(const std::array<glm::vec3, 3>& positions, const SeenFrom& from) 
 }  // namespace
 
 void find_strip(const std::array<glm::vec3, 3>& corners, const SeenFrom& from,
-                SeenTriangle triangle, std::vector<SeenTriangle>& seen) {
+                WideTriangle triangle, std::vector<WideTriangle>& seen) {
   const geometry::Rect& window = from.window;
   const auto blocks = [](int pixels) { return (pixels + kBlockSide - 1) / kBlockSide; };
   const int columns = blocks(window.width()), rows = blocks(window.height());

@@ -17,6 +17,6 @@ inline constexpr float kWidest = 64.0F;
 // it in, however rays are rounded: once for each row of blocks, or in all of the window where it
 // is not before the eye. O(rows).
 void find_strip(const std::array<glm::vec3, 3>& corners, const SeenFrom& from,
-                SeenTriangle triangle, std::vector<SeenTriangle>& seen);
+                WideTriangle triangle, std::vector<WideTriangle>& seen);
 
 }  // namespace delray::raytrace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,15 +13,6 @@
 
 namespace delray::raytrace {
 
-// A triangle that rays may hit through the blocks [x0, x1) x [y0, y1) of the window, and no others.
-struct SeenTriangle {
-  std::uint32_t instance = 0, triangle = 0;
-  float nearest = 0;  // no hit that Embree computes is nearer
-  std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-
-  int blocks() const { return (x1 - x0) * (y1 - y0); }
-};
-
 // The window of a view, cut into blocks of kBlockSide pixels.
 struct SeenWindow {
   const scenes::View& view;
@@ -29,22 +21,51 @@ struct SeenWindow {
   bool centred = true;  // rays go through centres of pixels; else anywhere through them
 };
 
-// Appends triangles [first, last) of an instance that rays of the window may hit, by Embree's own
-// arithmetic, in any block where they may. Sixteen at a time. O(triangles).
-void find_seen(const GeometryInstance& instance, std::uint32_t number, const RaySpace& space,
-               const SeenWindow& window, std::uint32_t first, std::uint32_t last,
-               std::vector<SeenTriangle>& seen);
-
 inline constexpr int kBinSide = 16;  // pixels
 inline constexpr int kBinBlocks = kBinSide / kBlockSide;
 inline constexpr int kSquareBlocks = kBinBlocks * kBinBlocks;
 
+// The blocks of a square that a triangle may be hit through: bit kBinBlocks * y + x is block
+// (x, y), and the bits from kSquareBlocks on are how many there are.
+using BlocksOfSquare = std::uint32_t;
+inline int count(BlocksOfSquare blocks) { return static_cast<int>(blocks >> kSquareBlocks); }
+
+// A triangle that rays may hit in one or up to four squares, once for each of them.
+struct TriangleInSquare {
+  std::uint32_t square, triangle;
+  float nearest;  // no hit that Embree computes is nearer
+  BlocksOfSquare blocks;
+};
+// One that reaches further: through the blocks [x0, x1) x [y0, y1) of the window, and no others.
+struct WideTriangle {
+  std::uint32_t triangle = 0;
+  float nearest = 0;
+  std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+// What may be hit of some triangles of an instance.
+struct SeenTriangles {
+  std::uint32_t instance = 0;
+  float nearest = std::numeric_limits<float>::infinity();  // of all
+  std::vector<TriangleInSquare> in_squares;
+  std::vector<WideTriangle> wide;
+};
+
+// Triangles [first, last) of an instance that rays of the window may hit, by Embree's own
+// arithmetic, in any block where they may. Sixteen at a time. O(triangles).
+SeenTriangles find_seen(const GeometryInstance& instance, std::uint32_t number,
+                        const RaySpace& space, const SeenWindow& window, std::uint32_t first,
+                        std::uint32_t last);
+
 // A triangle in one of the squares.
 struct BinnedTriangle {
   std::uint32_t instance, triangle;
-  float nearest;         // as above
-  std::uint32_t blocks;  // bit kBinBlocks * y + x: it may be hit through block (x, y)
+  float nearest;  // as above
+  BlocksOfSquare blocks;
 };
+
+// Squares of kBinSide pixels, row by row, the last ones reaching over the window.
+inline int squares_along(int pixels) { return (pixels + kBinSide - 1) / kBinSide; }
 
 // Triangles by squares of kBinSide pixels of the window, row by row.
 struct TriangleBins {
@@ -62,10 +83,9 @@ struct TriangleBins {
   }
 };
 
-// Triangles of lists whose nearest ones are nearer come first. Parallel: each thread walks through
-// all triangles and sorts those of some rows of squares. O(t threads + s), where s sums the squares
-// of each triangle. Throws std::length_error for 2^32 of them.
-TriangleBins bin_triangles(std::vector<std::vector<SeenTriangle>>&& seen,
-                           const geometry::Rect& window);
+// The triangles of which the nearest one is nearer come first. Parallel: threads share out the
+// parts. O(s), where s sums the squares of each triangle. Throws std::length_error for 2^32 of
+// them.
+TriangleBins bin_triangles(std::span<const SeenTriangles> seen, const geometry::Rect& window);
 
 }  // namespace delray::raytrace
