@@ -10,6 +10,13 @@ std::uint64_t Page::bytes() const {
          of(corners);
 }
 
+std::uint64_t PageRow::bytes_in_memory(const Attributes& attributes) const {
+  constexpr std::uint64_t kCorners = 3;
+  return sizeof(Page) + clusters * sizeof(PageCluster) + references * sizeof(std::uint32_t) +
+         triangles * (sizeof(glm::uvec3) + kCorners) +
+         vertices * (sizeof(glm::vec3) + attributes.bytes());
+}
+
 Attributes attributes_of(const scenes::Mesh& mesh) {
   return {!mesh.normals.empty(), !mesh.uvs.empty(), !mesh.uvs2.empty(), !mesh.tangents.empty(),
           !mesh.colours.empty()};

@@ -55,6 +55,16 @@ struct Page {
   std::uint64_t bytes() const;  // in memory
 };
 
+// Which attributes the vertices of a mesh have.
+struct Attributes {
+  bool normals = false, uvs = false, uvs2 = false, tangents = false, colours = false;
+  std::uint32_t bytes() const {  // of a vertex, without its position
+    return 12U * normals + 8U * uvs + 8U * uvs2 + 16U * tangents + 16U * colours;
+  }
+  bool operator==(const Attributes&) const = default;
+};
+Attributes attributes_of(const scenes::Mesh& mesh);
+
 inline constexpr std::uint32_t kNoGroup = 0xFFFFFFFFU;
 
 // Neighbouring pages that were simplified together: their outer border stayed as it was, so that
@@ -81,22 +91,15 @@ struct PageRow {
   NormalCone cone;
   // The groups that it was made of, none at level 0, and that it was simplified with.
   std::uint32_t made_of = kNoGroup, simplified_in = kNoGroup;
+
+  // Of a Page, about.
+  std::uint64_t bytes_in_memory(const Attributes& attributes) const;
 };
 
 // Pages [first, first + count) of the table.
 struct PageRange {
   std::uint32_t first = 0, count = 0;
 };
-
-// Which attributes the vertices of a mesh have.
-struct Attributes {
-  bool normals = false, uvs = false, uvs2 = false, tangents = false, colours = false;
-  std::uint32_t bytes() const {  // of a vertex, without its position
-    return 12U * normals + 8U * uvs + 8U * uvs2 + 16U * tangents + 16U * colours;
-  }
-  bool operator==(const Attributes&) const = default;
-};
-Attributes attributes_of(const scenes::Mesh& mesh);
 
 // A mesh in the table.
 struct MeshRow {

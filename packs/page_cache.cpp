@@ -97,6 +97,11 @@ std::uint64_t PageCache::bytes() const {
   return bytes_;
 }
 
+std::uint64_t PageCache::limit() const {
+  const std::lock_guard lock(mutex_);
+  return limit_;
+}
+
 // To the list, as given back now.
 void PageCache::append(std::uint32_t page) {
   Entry& entry = entries_[page];

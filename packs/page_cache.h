@@ -93,6 +93,7 @@ class PageCache {
 
   CacheCounts counts() const;
   std::uint64_t bytes() const;  // of the pages that are there
+  std::uint64_t limit() const;
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;

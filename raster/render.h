@@ -153,6 +153,7 @@ struct PackCounts {
 // The memory that a rank may take for the pages of a pack.
 struct PackMemory {
   std::uint64_t cache_bytes = std::uint64_t{1} << 30;
+  bool one_frame = false;  // pages need not stay for another one
 };
 
 // One rank's work for a frame.

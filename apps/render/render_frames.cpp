@@ -90,6 +90,8 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
   raster::PackMemory memory;
   // Blocks of the heap are never as full as they could be.
   memory.cache_bytes = std::max(left > other ? (left - other) / 4 * 3 / ranks : 0, kLeast);
+  memory.one_frame = request.frames == 1 && !request.is_animation() && !request.layout.wall &&
+                     !comes_in_bands(request);
   return memory;
 }
 

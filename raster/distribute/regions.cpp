@@ -65,6 +65,7 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
                                       x, y);
                   },
                   {},
+                  {},
                   task.progress} {
   const Screen& screen = task.screen;
   if (task.progress != nullptr) task.progress->start(tiles_.jobs.size());
@@ -76,6 +77,18 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
   for (const auto& memory : scratch_.tile_memory) {
     memory->seen.clear();
     memory->seen_in.clear();
+  }
+  if (task.list.holder != nullptr && !task.list.holder->keeps_all() &&
+      task.options.shade == Shade::deferred && frame_->shading().all_plain) {
+    // What they are of need not come back to memory when tiles are finished.
+    task.list.holder->need_not_keep();
+    const std::uint64_t number = ++scratch_.coloured;
+    scratch_.tile_colours.resize(static_cast<std::size_t>(screen.tiles()));
+    into_tiles_.tile_drawn = [this, number](int tile, VisibilityTile& visibility) {
+      std::unique_ptr<TileColours>& colours = scratch_.tile_colours[static_cast<std::size_t>(tile)];
+      if (colours == nullptr) colours.reset(new TileColours);
+      look_up_colours(frame_->shading(), visibility, number, *colours);
+    };
   }
   if (task.options.shade != Shade::immediate) return;
   const auto pixels =
@@ -162,6 +175,17 @@ void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) const {
     if (codes[block] != kEmptyCode) visibility.drop_behind(block, codes[block]);
 }
 
+ShadedPixels RegionDrawing::shaded_pixels(int tile) const {
+  if (looks_up_colours()) {
+    const TileColours* const colours = scratch_.tile_colours[static_cast<std::size_t>(tile)].get();
+    return {colours == nullptr ? nullptr : colours->colour, kTileSize};
+  }
+  if (task_.options.shade != Shade::immediate) return {};
+  const geometry::Rect corner = task_.screen.tile(tile);
+  const std::ptrdiff_t stride = task_.screen.width;
+  return {scratch_.shaded.data() + corner.y0 * stride + corner.x0, stride};
+}
+
 // The draws of large triangles that are looked up while they are drawn.
 void RegionDrawing::find_large(int tile, std::vector<std::uint32_t>& draws) const {
   draws.clear();
@@ -196,7 +220,6 @@ void RegionDrawing::find_seen(const TileJob& job, const VisibilityTile* tile, Ti
 void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
                                 RegionCounts& counts) {
   const Screen& screen = task_.screen;
-  const bool shade_now = task_.options.shade == Shade::immediate;
   ProcessorSeconds rasterize_seconds, shade_seconds;
   std::atomic<std::uint64_t> fragments{0}, shaded{0};
   std::atomic<std::size_t> next{0};
@@ -228,20 +251,16 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
                    scratch_.deferred.blended.of_tile(index), tile, mine.blended);
       clock.finish(0);
-      const geometry::Rect corner = screen.tile(index);
-      const image::RgbaF* const colours =
-          shade_now ? scratch_.shaded.data() +
-                          static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
-                    : nullptr;
-      TileView view(frame_->shading(), tile, colours, mine);
-      if (holder != nullptr) find_seen(jobs[k], tile, mine, draws);
+      TileView view(frame_->shading(), tile, shaded_pixels(index), mine);
+      draws.clear();
+      if (holder != nullptr && !looks_up_colours()) find_seen(jobs[k], tile, mine, draws);
       {
         const HeldDraws held(holder, draws);
         finish_tile(tiles_.rects_of(jobs[k]), view);
       }
       clock.finish(1);
       shown_here += view.shown();
-      shaded_here += view.shaded();
+      shaded_here += looks_up_colours() ? view.shown() : view.shaded();
       if (task_.progress != nullptr) task_.progress->advance();
     }
     fragments.fetch_add(shown_here, std::memory_order_relaxed);

@@ -7,6 +7,7 @@
 
 #include "parallel/function_ref.h"
 #include "raster/render.h"
+#include "raster/shading/tile_colours.h"
 #include "raster/shading/tile_view.h"
 
 namespace delray::raster {
@@ -24,6 +25,9 @@ struct Scratch {
   std::vector<std::unique_ptr<TileMemory>> tile_memory;  // by worker
   DeferredTriangles deferred;
   image::Plane<image::RgbaF> shaded;  // of a frame that is shaded as it is drawn
+  // By tile, of drawings whose colours are looked up as they are drawn; and how many these were.
+  std::vector<std::unique_ptr<TileColours>> tile_colours;
+  std::uint64_t coloured = 0;
 };
 
 // Times of rendering, summed over threads, and counts of the work.
@@ -112,6 +116,8 @@ class RegionDrawing {
   void find_seen(const TileJob& job, const VisibilityTile* tile, TileMemory& memory,
                  std::vector<std::uint32_t>& draws) const;
   void drop_hidden(int tile, VisibilityTile& visibility) const;
+  bool looks_up_colours() const { return into_tiles_.tile_drawn != nullptr; }
+  ShadedPixels shaded_pixels(int tile) const;
   void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
 
   const RegionTask task_;

@@ -14,6 +14,9 @@ namespace delray::raster {
 namespace {
 
 constexpr std::size_t kBatchPages = 128;  // drawn at once
+// For pages that nobody will ask for again: memory that was used before is in the caches, and has
+// not to be got from the system.
+constexpr std::uint64_t kPassingBytes = std::uint64_t{8} << 20;
 // Asked for at once before they are drawn: so many that of pages at about the same distance some
 // are neighbours in the file.
 constexpr std::size_t kPagesAhead = 32 * kBatchPages;
@@ -40,7 +43,9 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
     const scenes::Mesh& mesh = scene.meshes[instance.mesh];
     list_.draws.push_back(
         {&mesh, &instance.transform, nullptr, nullptr, widening_of(rank, packed, mesh, page.page)});
-    list_.triangles += packed.pack.pages()[page.page].triangles;
+    const packs::PageRow& row = packed.pack.pages()[page.page];
+    list_.triangles += row.triangles;
+    bytes_ += row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
   }
 }
 
@@ -113,6 +118,10 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
     pack.clusters += clusters.size();
     drawing.draw_in_order(clusters);
   }
+}
+
+void PackedDrawing::need_not_keep() {
+  if (packed_.one_frame) packed_.cache.set_limit(std::min(kPassingBytes, packed_.cache.limit()));
 }
 
 void PackedDrawing::count() { rank_.pack.cache += packed_.cache.counts() - before_; }

@@ -29,6 +29,8 @@ class PackedDrawing final : public MeshHolder {
 
   void hold(std::span<const std::uint32_t> draws) override;
   void release(std::span<const std::uint32_t> draws) override;
+  bool keeps_all() const override { return bytes_ <= packed_.cache.limit(); }
+  void need_not_keep() override;
 
  private:
   bool hides(const RegionDrawing& drawing, const PlacedPage& page) const;
@@ -39,6 +41,7 @@ class PackedDrawing final : public MeshHolder {
   const std::vector<PlacedPage> pages_;
   const packs::CacheCounts before_;
   DrawList list_;
+  std::uint64_t bytes_ = 0;  // of all pages in memory, about
   std::mutex mutex_;
   // By draw.
   std::vector<std::uint32_t> holders_;

@@ -44,8 +44,8 @@ PackedScene::PackedScene(const packs::PackReader& source, const PackMemory& memo
             const double waited = static_cast<RasterPage&>(*made).read(source, page);
             return packs::PageCache::Made{std::move(made), waited};
           },
-          [&source](std::uint32_t page) { return source.pages()[page].bytes; },
-          memory.cache_bytes) {
+          [&source](std::uint32_t page) { return source.pages()[page].bytes; }, memory.cache_bytes),
+      one_frame(memory.one_frame) {
   for (const packs::MeshRow& mesh : source.meshes()) {
     std::vector<packs::PageTree>& levels = trees.emplace_back();
     for (const packs::PageRange& range : mesh.levels)

@@ -38,6 +38,7 @@ class PackedScene {
   const packs::PackReader& pack;
   std::vector<std::vector<packs::PageTree>> trees;  // by mesh and level
   packs::PageCache cache;                           // of RasterPages
+  const bool one_frame;                             // that anybody will draw
 };
 
 }  // namespace delray::raster

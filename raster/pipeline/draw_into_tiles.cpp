@@ -182,6 +182,7 @@ void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) 
       const auto tile = static_cast<int>(touched.tile);
       if (!tiles.try_lock(tile)) return false;
       draw_into(task, touched, worker, tiles);
+      if (task.tile_drawn) task.tile_drawn(tile, tiles.open(tile));
       tiles.unlock(tile);
       return true;
     });

@@ -68,6 +68,9 @@ struct DrawIntoTiles {
   // Called for every pixel as soon as it shows another triangle, by the thread that has its tile;
   // pixels are drawn one by one then. Empty: never.
   std::function<void(std::size_t worker, std::uint32_t number, int x, int y)> shade_now;
+  // Called whenever clusters were drawn into a tile, by the thread that has it, while their draws
+  // are held. Empty: never.
+  std::function<void(int number, VisibilityTile& tile)> tile_drawn = {};
   parallel::Progress* progress = nullptr;
 };
 

@@ -329,7 +329,7 @@ void rasterize_splats(const Screen& screen, const geometry::Rect& rect,
       std::int64_t& old = tile.key[j * kTileSize + i];
       old = std::min(old, key);
     });
-    tile.stale |= touched;
+    tile.came_nearer(touched);
     for (std::uint32_t rest = touched; rest != 0; rest &= rest - 1) {
       const int block = std::countr_zero(rest);
       tile.set_farthest(block, tile.farthest_now(block));

@@ -204,7 +204,7 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
     }
     draw<Inside::tested>(t, triangle.number, i0 / lanes * lanes, (i1 + lanes - 1) / lanes * lanes,
                          j0, j1, tile);
-    tile.stale |= touched;
+    tile.came_nearer(touched);
     ++tile.since_refresh;
     refresh_if_due(tile);
   }
@@ -219,7 +219,7 @@ void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& ti
     const std::uint32_t block_y = fragment.pixel / kTileSize / VisibilityTile::kBlockHeight;
     touched |= 1U << (block_y * VisibilityTile::kBlocksX + block_x);
   }
-  tile.stale |= touched;
+  tile.came_nearer(touched);
   tile.since_refresh += static_cast<int>(fragments.size());
   refresh_if_due(tile);
 }
@@ -323,7 +323,7 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
     }
 #endif
     for (; i < width; i += lanes) draw_window(d, triangles, k, i, rows, keys + i);
-    tile.stale |= touched;
+    tile.came_nearer(touched);
     ++tile.since_refresh;
     refresh_if_due(tile);
   }
@@ -352,7 +352,7 @@ void VisibilityTile::clear(const geometry::Rect& rect) {
       std::fill(key + j * kTileSize + i0, key + j * kTileSize + i1, kEmptyKey);
   }
   for (int block = 0; block < kBlocks; ++block) set_farthest(block, kEmptyCode);
-  stale = 0;
+  stale = changed = 0;
   since_refresh = 0;
 }
 
@@ -399,7 +399,7 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
 }
 
 void note_drawn(std::uint32_t blocks, std::size_t count, VisibilityTile& tile) {
-  tile.stale |= blocks;
+  tile.came_nearer(blocks);
   tile.since_refresh += static_cast<int>(count);
   HWY_DYNAMIC_DISPATCH(refresh_if_due)(tile);
 }

@@ -54,13 +54,19 @@ struct VisibilityTile {
 
   alignas(64) std::int64_t key[kTilePixels];
   alignas(64) std::int32_t farthest[kBlocks];
-  std::uint32_t stale = 0;  // bit k: pixels of block k came nearer since farthest[k] was computed
-  int since_refresh = 0;    // small triangles and fragments drawn since
+  std::uint32_t stale = 0;    // bit k: pixels of block k came nearer since farthest[k] was computed
+  std::uint32_t changed = 0;  // the same, for who looks at what has come nearer, and clears it
+  int since_refresh = 0;      // small triangles and fragments drawn since
 
   // Nothing is seen in `rect` (pixels of the frame, within the tile). Outside it nothing ever will
   // be: the depths there are before all others, so that they do not spoil the farthest ones.
   void clear(const geometry::Rect& rect);
 
+  // Pixels of these blocks, a bit each, may have come nearer.
+  void came_nearer(std::uint32_t blocks) {
+    stale |= blocks;
+    changed |= blocks;
+  }
   // The code of the farthest depth in a block as it is now.
   std::int32_t farthest_now(int block) const;
   // Empties pixels of a block that are farther than this.

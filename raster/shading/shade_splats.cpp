@@ -1,13 +1,19 @@
 // Points of splats as shading wants them; and tiles of nothing but plain splats, whose colours are
-// looked up: those of a row are asked for before they are used, as they are scattered in memory.
+// looked up: those of a row are asked for before they are used, as they are scattered in memory, or
+// all of them while what they are of is at hand.
 //
 // Degenerate: a normal without a direction is replaced by the direction to the viewer.
 #include "raster/shading/shade_splats.h"
 
 #include <hwy/cache_control.h>
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "composite/fragment.h"
+#include "raster/shading/tile_colours.h"
 
 namespace delray::raster {
 namespace {
@@ -56,6 +62,13 @@ class VertexOfSplat {
   std::uint32_t first_ = 0;
   bool consecutive_ = false;
 };
+
+image::RgbaF colour_of(const FrameShading& frame, const VertexOfSplat::Found& found) {
+  const scenes::Mesh& mesh = *found.draw->mesh;
+  glm::vec4 colour = shading::material(frame.shader, mesh.material).base_colour;
+  if (!mesh.colours.empty()) colour *= mesh.colours[found.vertex];
+  return premultiplied(glm::vec3(colour), 1);
+}
 
 }  // namespace
 
@@ -116,19 +129,43 @@ std::uint64_t shade_plain_splats(const FrameShading& frame, const VisibilityTile
     }
     for (int i = 0; i < rect.width(); ++i) {
       Colour& pixel = window.colour[first + static_cast<std::size_t>(i)];
-      const auto [draw, vertex] = found[i];
-      if (draw == nullptr) {
+      if (found[i].draw == nullptr) {
         pixel = {};
         continue;
       }
       ++shown;
-      const scenes::Mesh& mesh = *draw->mesh;
-      glm::vec4 colour = shading::material(frame.shader, mesh.material).base_colour;
-      if (!mesh.colours.empty()) colour *= mesh.colours[vertex];
-      composite::store(premultiplied(glm::vec3(colour), 1), pixel);
+      composite::store(colour_of(frame, found[i]), pixel);
     }
   }
   return shown;
+}
+
+void look_up_colours(const FrameShading& frame, VisibilityTile& tile, std::uint64_t drawing,
+                     TileColours& colours) {
+  if (colours.drawing != drawing) {
+    std::fill(std::begin(colours.number), std::end(colours.number), kNothing);
+    colours.drawing = drawing;
+  }
+  VertexOfSplat vertex_of(frame.list);
+  for (std::uint32_t rest = std::exchange(tile.changed, 0); rest != 0; rest &= rest - 1) {
+    const int block = std::countr_zero(rest);
+    const int corner = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight * kTileSize +
+                       block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
+    for (int j = 0; j < VisibilityTile::kBlockHeight; ++j) {
+      const int first = corner + j * kTileSize;
+      std::uint32_t others = 0;
+      for (int i = first; i < first + VisibilityTile::kBlockWidth; ++i)
+        others |= number_of(tile.key[i]) ^ colours.number[i];
+      if (others == 0) continue;
+      for (int i = first; i < first + VisibilityTile::kBlockWidth; ++i) {
+        const std::uint32_t number = number_of(tile.key[i]);
+        if (number == colours.number[i]) continue;
+        colours.number[i] = number;
+        const bool outside = tile.key[i] == 0;  // VisibilityTile::clear
+        if (!outside) colours.colour[i] = colour_of(frame, vertex_of.of(number));
+      }
+    }
+  }
 }
 
 template std::uint64_t shade_plain_splats(const FrameShading&, const VisibilityTile&,

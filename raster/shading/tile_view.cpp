@@ -10,13 +10,9 @@
 
 namespace delray::raster {
 image::RgbaF TileView::colour(std::uint32_t number, int x, int y) {
-  if (shaded_ != nullptr && tile_ != nullptr) {
-    const int pixel = y % kTileSize * kTileSize + x % kTileSize;
-    if (number_of(tile_->key[pixel]) == number) {
-      return shaded_[static_cast<std::ptrdiff_t>(y % kTileSize) * frame_.screen.width +
-                     x % kTileSize];
-    }
-  }
+  if (shaded_.colour != nullptr && tile_ != nullptr &&
+      number_of(tile_->key[pixel_of(x, y)]) == number)
+    return shaded_.at(x, y);
   ++shaded_now_;
   return colour_at(frame_, memory_.seen, number, x, y);
 }
@@ -27,7 +23,7 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
     clear_pixels(rect, window);
     return;
   }
-  if (shaded_ == nullptr) {
+  if (shaded_.colour == nullptr) {
     const std::uint64_t shown =
         frame_.all_plain ? shade_plain_splats(frame_, *tile_, rect, window)
         : frame_.lighting == Lighting::gouraud
@@ -53,7 +49,7 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
 void TileView::shade_asked() {
   const std::vector<SurfaceAt>& asked = memory_.asked;
   memory_.answers.resize(asked.size());
-  if (shaded_ == nullptr) {
+  if (shaded_.colour == nullptr) {
     shaded_now_ += asked.size();
     if (frame_.lighting == Lighting::gouraud)
       memory_.gouraud.colours(frame_, memory_.seen, asked, memory_.answers.data());

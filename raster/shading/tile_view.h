@@ -40,12 +40,21 @@ struct TileMemory {
   std::vector<image::RgbaF> answers;
 };
 
+// Colours of a tile's pixels that were shaded as they were drawn; null: they were not.
+struct ShadedPixels {
+  const image::RgbaF* colour = nullptr;  // of the tile's first pixel
+  std::ptrdiff_t stride = 0;             // from row to row
+
+  const image::RgbaF& at(int x, int y) const {
+    return colour[y % kTileSize * stride + x % kTileSize];
+  }
+};
+
 class TileView {
  public:
   // `tile` is null where nothing opaque was drawn; memory.blended is what is before it, by pixel
-  // and front to back. `shaded` are the colours of the tile's pixels, in rows of the frame's width,
-  // if they were shaded as they were drawn, else null.
-  TileView(const FrameShading& frame, const VisibilityTile* tile, const image::RgbaF* shaded,
+  // and front to back.
+  TileView(const FrameShading& frame, const VisibilityTile* tile, const ShadedPixels& shaded,
            TileMemory& memory)
       : frame_(frame), tile_(tile), shaded_(shaded), memory_(memory) {}
 
@@ -109,7 +118,7 @@ class TileView {
 
   const FrameShading& frame_;
   const VisibilityTile* tile_;
-  const image::RgbaF* shaded_;
+  const ShadedPixels shaded_;
   TileMemory& memory_;
   std::uint64_t shown_ = 0, shaded_now_ = 0;
 };

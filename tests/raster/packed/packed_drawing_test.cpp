@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <random>
 
 #include "comm/threads.h"
 #include "files/error.h"
 #include "packs/pack_writer.h"
 #include "raster/combinations.h"
 #include "scenes/generate.h"
+#include "scenes/points.h"
 #include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 #include "tests/support/temporary_folder.h"
@@ -116,6 +118,101 @@ TEST(PackedDrawing, CountsWhatItReads) {
     EXPECT_EQ(second.misses, 0U);
     EXPECT_GT(second.hits, 0U);
   });
+}
+
+// Points of one colour each, by the number of the mesh, of all kinds and sizes.
+scenes::Scene plain_points(unsigned seed) {
+  using Kind = scenes::Shape::Kind;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
+  scenes::Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].unlit = true;
+  scene.materials[0].base_colour = {0.9F, 0.7F, 1.0F, 1.0F};
+  for (const Kind kind : {Kind::point, Kind::disc, Kind::sphere}) {
+    for (const float radius : {0.4F, 2.5F, 30.0F}) {
+      scenes::Mesh mesh;
+      const int count = radius > 3 ? 20 : 2500;
+      for (int i = 0; i < count; ++i) {
+        mesh.positions.emplace_back(both(random), both(random), both(random));
+        mesh.normals.push_back(glm::normalize(glm::vec3(both(random), both(random), 1)));
+        if (kind != Kind::disc)
+          mesh.colours.emplace_back(unit(random), unit(random), unit(random), 1.0F);
+      }
+      scenes::make_points(mesh, {kind, true, radius});
+      scene.instances.push_back({static_cast<std::uint32_t>(scene.meshes.size())});
+      scene.meshes.push_back(std::move(mesh));
+    }
+  }
+  return scene;
+}
+
+TEST(PackedDrawing, LooksUpColoursOfPointsBeforeTheirPagesGo) {
+  const tests::TemporaryFolder folder;
+  const scenes::Scene scene = plain_points(20261128);
+  packs::write_pack(folder / "a.pack", scene, {.levels = false});
+  const packs::PackReader pack(folder / "a.pack");
+  scenes::Camera camera;
+  camera.eye = {0.4F, 0.3F, 3.0F};
+  for (const bool one_frame : {false, true}) {
+    for (const bool float_pixels : {false, true}) {
+      for (const int samples : {1, 2}) {
+        RenderOptions options;
+        options.width = 150;
+        options.height = 110;
+        options.supersampling = samples;
+        options.float_pixels = float_pixels;
+        const Picture expected = of_scene(scene, camera, options).picture;
+        for (const int ranks : {1, 3}) {
+          options.strategy = ranks == 1 ? "sort-first" : "sort-last";
+          const Result result = of_pack(pack, camera, options, {0, one_frame}, ranks, 3);
+          EXPECT_TRUE(same_bytes(result.picture, expected)) << float_pixels << samples << ranks;
+          EXPECT_EQ(result.statistics.shaded, result.statistics.fragments);
+        }
+      }
+    }
+  }
+}
+
+TEST(PackedDrawing, ReadsPagesOfPlainPointsOnce) {
+  const tests::TemporaryFolder folder;
+  std::mt19937 random(20261130);
+  std::uniform_real_distribution<float> both(-1, 1);
+  constexpr std::uint64_t kPages = 64;  // batches of one thread are of whole pages then
+  scenes::Scene scene = plain_points(1);
+  scenes::Mesh mesh;
+  mesh.positions.resize(kPages * packs::kPageClusters * kClusterTriangles);
+  for (glm::vec3& p : mesh.positions) p = {both(random), both(random), both(random)};
+  scenes::make_points(mesh, {scenes::Shape::Kind::point, true, 2.0F});
+  scene.meshes = {std::move(mesh)};
+  scene.instances = {{}};
+  packs::write_pack(folder / "a.pack", scene, {.levels = false});
+  const packs::PackReader pack(folder / "a.pack");
+  scenes::Camera camera;
+  camera.eye = {0.4F, 0.3F, 3.0F};
+  RenderOptions options;
+  options.width = 640;
+  options.height = 480;
+  const Result result = of_pack(pack, camera, options, {0, true}, 1, 1);
+  const PackCounts& counts = *result.statistics.pack;
+  EXPECT_EQ(counts.pages, kPages);
+  EXPECT_EQ(counts.cache.pages_read, counts.pages - counts.pages_hidden);
+}
+
+// With room for all pages colours are looked up in the end, from what is there.
+TEST(PackedDrawing, KeepsPagesOfPlainPointsWhereTheyFit) {
+  const tests::TemporaryFolder folder;
+  const scenes::Scene scene = plain_points(20261129);
+  packs::write_pack(folder / "a.pack", scene, {.levels = false});
+  const packs::PackReader pack(folder / "a.pack");
+  scenes::Camera camera;
+  camera.eye = {0.4F, 0.3F, 3.0F};
+  RenderOptions options;
+  options.width = 150;
+  options.height = 110;
+  const Result result = of_pack(pack, camera, options, {std::uint64_t{1} << 30}, 1, 2);
+  EXPECT_TRUE(same_bytes(result.picture, of_scene(scene, camera, options).picture));
+  EXPECT_EQ(result.statistics.pack->cache.pages_read, 0U);  // of the second frame
 }
 
 TEST(PackedDrawing, OfADamagedPackEndsAllRanksWithTheSameError) {
