@@ -55,6 +55,8 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
       tiles_(make_tile_jobs(task.screen, task.regions)),
       own_frame_(std::move(own)),
       frame_(own_frame_ != nullptr ? own_frame_.get() : frame),
+      holder_(task.list.holder != nullptr && !task.list.holder->keeps_all() ? task.list.holder
+                                                                            : nullptr),
       into_tiles_{task.screen,
                   task.list,
                   frame_->draws(),
@@ -78,10 +80,9 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
     memory->seen.clear();
     memory->seen_in.clear();
   }
-  if (task.list.holder != nullptr && !task.list.holder->keeps_all() &&
-      task.options.shade == Shade::deferred && frame_->shading().all_plain) {
+  if (holder_ != nullptr && task.options.shade == Shade::deferred && frame_->shading().all_plain) {
     // What they are of need not come back to memory when tiles are finished.
-    task.list.holder->need_not_keep();
+    holder_->need_not_keep();
     const std::uint64_t number = ++scratch_.coloured;
     scratch_.tile_colours.resize(static_cast<std::size_t>(screen.tiles()));
     into_tiles_.tile_drawn = [this, number](int tile, VisibilityTile& visibility) {
@@ -226,7 +227,6 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
   parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t worker) {
     StageClock<2> clock;
     TileMemory& mine = *scratch_.tile_memory[worker];
-    MeshHolder* const holder = task_.list.holder;
     std::vector<std::uint32_t> draws;
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
@@ -242,8 +242,8 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
         tile->clear(scratch_.tiles.rect(index));
       }
       if (tile != nullptr) {
-        if (holder != nullptr) find_large(index, draws);
-        const HeldDraws held(holder, draws);
+        if (holder_ != nullptr) find_large(index, draws);
+        const HeldDraws held(holder_, draws);
         shaded_here += draw_large(into_tiles_, worker, scratch_.deferred.large,
                                   {index, scratch_.tiles.rect(index), *tile});
       }
@@ -253,9 +253,9 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
       clock.finish(0);
       TileView view(frame_->shading(), tile, shaded_pixels(index), mine);
       draws.clear();
-      if (holder != nullptr && !looks_up_colours()) find_seen(jobs[k], tile, mine, draws);
+      if (holder_ != nullptr && !looks_up_colours()) find_seen(jobs[k], tile, mine, draws);
       {
-        const HeldDraws held(holder, draws);
+        const HeldDraws held(holder_, draws);
         finish_tile(tiles_.rects_of(jobs[k]), view);
       }
       clock.finish(1);

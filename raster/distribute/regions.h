@@ -125,6 +125,7 @@ class RegionDrawing {
   const TileJobs tiles_;
   std::unique_ptr<PreparedFrame> own_frame_;
   const PreparedFrame* frame_;
+  MeshHolder* const holder_;  // of tiles that are finished; null: what was drawn is there
   DrawIntoTiles into_tiles_;
   DrawCosts costs_;
   std::vector<std::int32_t> hidden_behind_;  // empty: nothing is known

@@ -3,8 +3,8 @@
 // drawn by then hides it. Who draws pages unpacks them (HeldDraws), so that they are in his cache.
 //
 // Shading comes when everything is drawn, and looks at what is seen only: it holds the pages of a
-// tile, which the cache may have to read again. Degenerate: where nothing is in view nothing is
-// read.
+// tile, which the cache may have to read again; where all pages fit in memory they are held until
+// the frame is finished. Degenerate: where nothing is in view nothing is read.
 #include "raster/packed/packed_drawing.h"
 
 #include <algorithm>
@@ -38,6 +38,7 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
   list_.holder = this;
   list_.clusters.resize(pages_.size() * packs::kPageClusters);
   list_.draws.reserve(pages_.size());
+  std::uint64_t bytes = 0;  // of all pages in memory, about
   for (const PlacedPage& page : pages_) {
     const scenes::Instance& instance = scene.instances[page.instance];
     const scenes::Mesh& mesh = scene.meshes[instance.mesh];
@@ -45,8 +46,11 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
         {&mesh, &instance.transform, nullptr, nullptr, widening_of(rank, packed, mesh, page.page)});
     const packs::PageRow& row = packed.pack.pages()[page.page];
     list_.triangles += row.triangles;
-    bytes_ += row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
+    bytes += row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
   }
+  // Memory that was another page's before is mostly larger.
+  constexpr std::uint64_t kSlack = 2;
+  keeps_all_ = bytes * kSlack <= packed.cache.limit();
 }
 
 bool PackedDrawing::hides(const RegionDrawing& drawing, const PlacedPage& page) const {
@@ -145,6 +149,7 @@ void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
 
 void PackedDrawing::release(std::span<const std::uint32_t> draws) {
   std::vector<packs::PageCache::Held> pages;  // given back after the lock
+  if (keeps_all_) return;
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t draw : draws)
     if (--holders_[draw] == 0) pages.push_back(std::move(held_[draw]));

@@ -29,7 +29,7 @@ class PackedDrawing final : public MeshHolder {
 
   void hold(std::span<const std::uint32_t> draws) override;
   void release(std::span<const std::uint32_t> draws) override;
-  bool keeps_all() const override { return bytes_ <= packed_.cache.limit(); }
+  bool keeps_all() const override { return keeps_all_; }
   void need_not_keep() override;
 
  private:
@@ -41,7 +41,7 @@ class PackedDrawing final : public MeshHolder {
   const std::vector<PlacedPage> pages_;
   const packs::CacheCounts before_;
   DrawList list_;
-  std::uint64_t bytes_ = 0;  // of all pages in memory, about
+  bool keeps_all_ = false;
   std::mutex mutex_;
   // By draw.
   std::vector<std::uint32_t> holders_;

@@ -57,7 +57,8 @@ class MeshHolder {
   // Throws FileError where they cannot be read.
   virtual void hold(std::span<const std::uint32_t> draws) = 0;
   virtual void release(std::span<const std::uint32_t> draws) = 0;
-  // Whether draws that were held once stay in memory to the end of the frame, by estimate.
+  // Whether draws that were held once stay in memory to the end of the frame, whether released or
+  // not.
   virtual bool keeps_all() const = 0;
   // Nothing that is held now or later will be held again in this frame.
   virtual void need_not_keep() = 0;
