@@ -1,7 +1,9 @@
-// Packs the rows of a rank's regions, colours before depths, into one message for rank 0, which
-// copies them to their places. Degenerate: a rank without pixels sends nothing.
+// Packs a rank's regions, tile by tile, colours before depths, into one message for rank 0, which
+// copies them to their places. Last comes a byte for each tile: whether it is there. Degenerate: a
+// rank without pixels sends nothing.
 #include "raster/distribute/gather_regions.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "loadbalance/deliver.h"
@@ -11,63 +13,131 @@ namespace {
 
 constexpr comm::Tag kTagRegions = 80;
 
-// Calls f(first pixel, count) for each row of the regions of `owner`, in the order of the
+// Calls f(rect, tile) for the parts of tiles in the regions of `owner`, in the order of the
 // partition.
 template <class F>
-void for_each_row(const loadbalance::Partition& partition, int owner, int image_width, F&& f) {
+void for_each_part(const loadbalance::Partition& partition, int owner, const ImageTiles& tiles,
+                   F&& f) {
   for (const loadbalance::Region& region : partition.regions) {
     if (region.owner != owner || region.rect.empty()) continue;
-    for (int y = region.rect.y0; y < region.rect.y1; ++y) {
-      f(static_cast<std::size_t>(y) * image_width + region.rect.x0,
-        static_cast<std::size_t>(region.rect.width()));
+    const geometry::Rect& rect = region.rect;
+    for (int y = rect.y0 / tiles.side; y * tiles.side < rect.y1; ++y) {
+      for (int x = rect.x0 / tiles.side; x * tiles.side < rect.x1; ++x) {
+        const geometry::Rect tile{x * tiles.side, y * tiles.side, (x + 1) * tiles.side,
+                                  (y + 1) * tiles.side};
+        f(geometry::intersection(rect, tile), static_cast<std::size_t>(y * tiles.columns + x));
+      }
     }
   }
 }
 
-std::size_t pixels_of(const loadbalance::Partition& partition, int owner) {
+// Calls f(first pixel, count) for each row of a rectangle.
+template <class F>
+void for_each_row(const geometry::Rect& rect, int image_width, F&& f) {
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    f(static_cast<std::size_t>(y) * static_cast<std::size_t>(image_width) +
+          static_cast<std::size_t>(rect.x0),
+      static_cast<std::size_t>(rect.width()));
+  }
+}
+
+template <class Colour>
+bool is_empty(const image::BasicImage<Colour>& image, const geometry::Rect& rect) {
+  bool empty = true;
+  for_each_row(rect, image.width, [&](std::size_t pixel, std::size_t count) {
+    const float* const depth = image.depth.data() + pixel;
+    empty =
+        empty && std::all_of(depth, depth + count, [](float d) { return d == image::kEmptyDepth; });
+  });
+  return empty;
+}
+
+// A message of some pixels and what is known of some parts.
+template <class Colour>
+struct Pieces {
+  Pieces(std::byte* message, std::size_t pixels)
+      : colour(message),
+        depth(colour + pixels * sizeof(Colour)),
+        there(depth + pixels * sizeof(float)) {}
+  static std::size_t bytes(std::size_t pixels, std::size_t parts) {
+    return pixels * (sizeof(Colour) + sizeof(float)) + parts;
+  }
+  std::byte *colour, *depth, *there;
+};
+
+template <class Colour>
+comm::Buffer packed(const loadbalance::Partition& partition, int owner, const ImageTiles& tiles,
+                    const image::BasicImage<Colour>& image) {
+  std::vector<std::uint8_t> there;
   std::size_t pixels = 0;
-  for (const loadbalance::Region& region : partition.regions)
-    if (region.owner == owner) pixels += static_cast<std::size_t>(region.rect.area());
-  return pixels;
+  for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t tile) {
+    const bool empty = tiles.empty.empty() ? is_empty(image, rect) : tiles.empty[tile] != 0;
+    there.push_back(empty ? 0 : 1);
+    if (there.back() != 0) pixels += static_cast<std::size_t>(rect.area());
+  });
+  comm::Buffer message(Pieces<Colour>::bytes(pixels, there.size()));
+  if (there.empty()) return message;
+  Pieces<Colour> to(message.data(), pixels);
+  std::memcpy(to.there, there.data(), there.size());
+  const std::uint8_t* next = there.data();
+  for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t) {
+    if (*next++ == 0) return;
+    for_each_row(rect, image.width, [&](std::size_t pixel, std::size_t count) {
+      std::memcpy(to.colour, image.colour.data() + pixel, count * sizeof(Colour));
+      std::memcpy(to.depth, image.depth.data() + pixel, count * sizeof(float));
+      to.colour += count * sizeof(Colour);
+      to.depth += count * sizeof(float);
+    });
+  });
+  return message;
+}
+
+template <class Colour>
+void unpack(comm::Buffer&& message, const loadbalance::Partition& partition, int owner,
+            const ImageTiles& tiles, image::BasicImage<Colour>& image) {
+  std::size_t parts = 0;
+  for_each_part(partition, owner, tiles, [&](const geometry::Rect&, std::size_t) { ++parts; });
+  const std::size_t pixels = (message.size() - parts) / (sizeof(Colour) + sizeof(float));
+  Pieces<Colour> from(message.data(), pixels);
+  for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t tile) {
+    const bool there = *from.there++ != std::byte{0};
+    if (!there && !tiles.clear.empty() && tiles.clear[tile] != 0) return;
+    if (!tiles.clear.empty()) {
+      const bool whole = rect.x0 % tiles.side == 0 && rect.y0 % tiles.side == 0 &&
+                         rect.width() == std::min(tiles.side, image.width - rect.x0) &&
+                         rect.height() == std::min(tiles.side, image.height - rect.y0);
+      tiles.clear[tile] = !there && whole ? 1 : 0;
+    }
+    for_each_row(rect, image.width, [&](std::size_t pixel, std::size_t count) {
+      if (!there) {
+        std::fill_n(image.colour.data() + pixel, count, Colour{});
+        std::fill_n(image.depth.data() + pixel, count, image::kEmptyDepth);
+        return;
+      }
+      std::memcpy(image.colour.data() + pixel, from.colour, count * sizeof(Colour));
+      std::memcpy(image.depth.data() + pixel, from.depth, count * sizeof(float));
+      from.colour += count * sizeof(Colour);
+      from.depth += count * sizeof(float);
+    });
+  });
 }
 
 }  // namespace
 
 template <class Colour>
 void gather_regions(comm::Communicator& communicator, const loadbalance::Partition& partition,
-                    image::BasicImage<Colour>& image) {
-  const auto copy = [](auto* to, const auto* from, std::size_t count) {
-    std::memcpy(to, from, count * sizeof(*from));
-  };
-  const auto message_of = [&](int owner) {
-    return pixels_of(partition, owner) * (sizeof(Colour) + sizeof(float));
-  };
+                    const ImageTiles& tiles, image::BasicImage<Colour>& image) {
   if (communicator.rank() != 0) {
-    const int mine = communicator.rank();
-    comm::Buffer message(message_of(mine));
-    if (message.empty()) return;
-    auto* colour = reinterpret_cast<Colour*>(message.data());
-    auto* depth = reinterpret_cast<float*>(colour + pixels_of(partition, mine));
-    for_each_row(partition, mine, image.width, [&](std::size_t pixel, std::size_t count) {
-      copy(colour, image.colour.data() + pixel, count);
-      copy(depth, image.depth.data() + pixel, count);
-      colour += count;
-      depth += count;
-    });
-    communicator.send(0, kTagRegions, std::move(message));
+    comm::Buffer message = packed(partition, communicator.rank(), tiles, image);
+    if (!message.empty()) communicator.send(0, kTagRegions, std::move(message));
     return;
   }
+  std::vector<std::uint8_t> has_pixels(static_cast<std::size_t>(communicator.size()));
+  for (const loadbalance::Region& region : partition.regions)
+    if (!region.rect.empty()) has_pixels[static_cast<std::size_t>(region.owner)] = 1;
   for (int owner = 1; owner < communicator.size(); ++owner) {
-    if (message_of(owner) == 0) continue;
-    const comm::Buffer message = communicator.receive(owner, kTagRegions);
-    const auto* colour = reinterpret_cast<const Colour*>(message.data());
-    const auto* depth = reinterpret_cast<const float*>(colour + pixels_of(partition, owner));
-    for_each_row(partition, owner, image.width, [&](std::size_t pixel, std::size_t count) {
-      copy(image.colour.data() + pixel, colour, count);
-      copy(image.depth.data() + pixel, depth, count);
-      colour += count;
-      depth += count;
-    });
+    if (has_pixels[static_cast<std::size_t>(owner)] == 0) continue;
+    unpack(communicator.receive(owner, kTagRegions), partition, owner, tiles, image);
   }
 }
 
@@ -98,8 +168,10 @@ std::vector<image::BasicImage<Colour>> deliver_regions(
   return pictures;
 }
 
-template void gather_regions(comm::Communicator&, const loadbalance::Partition&, image::Image8&);
-template void gather_regions(comm::Communicator&, const loadbalance::Partition&, image::ImageF&);
+template void gather_regions(comm::Communicator&, const loadbalance::Partition&, const ImageTiles&,
+                             image::Image8&);
+template void gather_regions(comm::Communicator&, const loadbalance::Partition&, const ImageTiles&,
+                             image::ImageF&);
 template std::vector<image::Image8> deliver_regions(comm::Communicator&,
                                                     const loadbalance::Partition&,
                                                     const image::Image8&,

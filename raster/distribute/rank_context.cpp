@@ -122,20 +122,21 @@ template <class Colour>
 void RankContext::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
   const Window<Colour> window = window_of(image);
   // Tiles that were left clear in the same memory before need not be cleared again.
-  const bool whole = ranks() == 1 && options.supersampling == 1;
-  std::vector<std::uint8_t>& clear = scratch.clear_tiles;
+  std::vector<std::uint8_t>&clear = scratch.clear_tiles, &empty = scratch.empty_tiles;
   const auto tiles = static_cast<std::size_t>(screen.tiles());
   if (scratch.taken != image.colour.data() || clear.size() != tiles) clear.assign(tiles, 0);
+  empty.assign(tiles, 1);
   scratch.taken = nullptr;
   end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
     const geometry::Rect& first = rects.front();
-    const auto index =
-        static_cast<std::size_t>(first.y0 / kTileSize * screen.tiles_x + first.x0 / kTileSize);
-    if (whole && tile.empty() && clear[index] != 0) return;
-    if (whole) clear[index] = static_cast<std::uint8_t>(tile.empty());
+    const int number = first.y0 / kTileSize * screen.tiles_x + first.x0 / kTileSize;
+    const auto index = static_cast<std::size_t>(number);
+    empty[index] = static_cast<std::uint8_t>(tile.empty());
+    if (tile.empty() && clear[index] != 0) return;
+    clear[index] = static_cast<std::uint8_t>(tile.empty() && first == screen.tile(number));
     store_pixels(rects, tile, options.supersampling, window);
   });
-  if (whole) scratch.clear_in = image.colour.data();
+  scratch.clear_in = image.colour.data();
 }
 
 template <class Colour>
@@ -163,11 +164,16 @@ Picture RankContext::gather(const loadbalance::Partition& partition,
                             image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();
-  if (options.displays.empty())
-    gather_regions(communicator, partition, image);
-  else
+  if (options.displays.empty()) {
+    ImageTiles tiles{kTileSize / options.supersampling, screen.tiles_x, {}, {}};
+    // Unless somebody else wrote into the image.
+    if (scratch.clear_in != nullptr && scratch.clear_in == image.colour.data())
+      tiles.empty = scratch.empty_tiles, tiles.clear = scratch.clear_tiles;
+    gather_regions(communicator, partition, tiles, image);
+  } else {
     for (auto& display : deliver_regions(communicator, partition, image, options.displays))
       shown.emplace_back(std::move(display));
+  }
   counts.phases.gather += communicator.seconds() - before;
   if (number() == 0 && options.displays.empty()) return std::move(image);
   if (image.width > 0) scratch.spare = std::move(image);  // for the next frame

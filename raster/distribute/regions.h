@@ -16,8 +16,8 @@ namespace delray::raster {
 struct Scratch {
   Picture spare;  // nobody's any more
   // By tile: whether it is clear in the picture whose colours are at `clear_in`, or `taken` when
-  // that picture was taken for the frame at hand.
-  std::vector<std::uint8_t> clear_tiles;
+  // that picture was taken for the frame at hand; and whether this rank's regions of it are.
+  std::vector<std::uint8_t> clear_tiles, empty_tiles;
   const void* clear_in = nullptr;
   const void* taken = nullptr;
   FrameTiles tiles;
