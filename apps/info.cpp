@@ -179,7 +179,7 @@ Json describe_pack(const std::string& path, const files::MemoryBudget& memory) {
   geometry::Box3 box;
   for (const packs::MeshRow& mesh : pack.meshes()) {
     levels = std::max(levels, mesh.levels.size());
-    triangles += mesh.triangles;
+    if (mesh.shape.kind == scenes::Shape::Kind::triangle) triangles += mesh.triangles;
     has.uvs |= mesh.attributes.uvs;
     has.colours |= mesh.attributes.colours;
   }
@@ -192,11 +192,9 @@ Json describe_pack(const std::string& path, const files::MemoryBudget& memory) {
       box.include(instance.transform * glm::vec4(corner, 1.0F));
     }
   }
-  Json description = {{"triangles", pack.first_primitives().back()},
-                      {"vertices", pack.vertices()},
-                      {"meshes", pack.meshes().size()},
-                      {"instances", scene.instances.size()},
-                      {"stored_triangles", triangles}};
+  Json description = {{"triangles", pack.triangles()},       {"points", pack.splats()},
+                      {"vertices", pack.vertices()},         {"meshes", pack.meshes().size()},
+                      {"instances", scene.instances.size()}, {"stored_triangles", triangles}};
   if (!box.empty()) {
     description["low"] = numbers(glm::dvec3(box.low) + scene.origin);
     description["high"] = numbers(glm::dvec3(box.high) + scene.origin);

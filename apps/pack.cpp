@@ -8,6 +8,7 @@
 #include "apps/commands.h"
 #include "apps/input/point_parts_input.h"
 #include "apps/input/scene_input.h"
+#include "apps/interrupt.h"
 #include "apps/launch.h"
 #include "apps/options/help.h"
 #include "apps/options/numbers.h"
@@ -58,7 +59,8 @@ Json statistics_of(const PackOptions& options) {
   return {{"schema", "delray.pack/1"},
           {"input", {{"file", options.scene.file.path}}},
           {"result",
-           {{"triangles", pack.first_primitives().back()},
+           {{"triangles", pack.triangles()},
+            {"points", pack.splats()},
             {"meshes", pack.meshes().size()},
             {"levels", levels},
             {"pages", pack.pages().size()},
@@ -78,14 +80,16 @@ int run(Session& session, const PackOptions& options) {
   const parallel::AllowThreads allowed(threads);
   parallel::Arena arena(threads);
   ProgressBar bar(session, "pack");
+  const StopOnTermination stop;
   arena.execute([&] { pack_scene(options, &session.progress); });
   bar.end();
   Json statistics = statistics_of(options);
   statistics["seconds"] = {{"pack", watch.lap()}};
   write_statistics(options.statistics, statistics);
   const Json& result = statistics["result"];
-  spdlog::info("{}: {} triangles in {} pages, {}", output, result["triangles"].dump(),
-               result["pages"].dump(), files::bytes_text(result["bytes"].get<std::uint64_t>()));
+  spdlog::info("{}: {} in {} pages, {}", output,
+               primitives_text(result["triangles"], result["points"]), result["pages"].dump(),
+               files::bytes_text(result["bytes"].get<std::uint64_t>()));
   return kDone;
 }
 

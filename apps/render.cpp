@@ -84,11 +84,9 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
   const std::string hash = write_picture(session, request.output, frames.picture, frames.extras);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
-  const std::string points =
-      prepared.points > 0 ? fmt::format(", {} points and lines", prepared.points) : "";
-  spdlog::info("{}: {} x {}, {} triangles{}, {:.3f} s a frame",
+  spdlog::info("{}: {} x {}, {}, {:.3f} s a frame",
                request.output == "-" ? "standard output" : request.output, request.picture_width(),
-               request.picture_height(), prepared.triangles, points,
+               request.picture_height(), primitives_text(prepared.triangles, prepared.points),
                statistics["seconds"]["frame"].get<double>());
   log_details(statistics);
 }

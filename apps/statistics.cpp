@@ -1,6 +1,7 @@
 // Writes JSON as ASCII, and asks the system for the peak memory of the process.
 #include "apps/statistics.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include "files/atomic_file.h"
@@ -20,6 +21,13 @@ std::uint64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kibibytes
+}
+
+std::string primitives_text(std::uint64_t triangles, std::uint64_t splats) {
+  const std::string points = fmt::format("{} points and lines", splats);
+  if (triangles == 0 && splats > 0) return points;
+  return fmt::format("{} triangles{}{}", triangles, splats > 0 ? ", " : "",
+                     splats > 0 ? points : "");
 }
 
 }  // namespace delray::apps

@@ -30,6 +30,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// What a scene is made of: "12 triangles, 3 points and lines", without what there is none of.
+std::string primitives_text(std::uint64_t triangles, std::uint64_t splats);
+
 // The most memory that this process has had, bytes.
 std::uint64_t peak_memory();
 

@@ -204,7 +204,15 @@ int run(Session& session, const VerifyOptions& options) {
     check_outputs({{"--stats", options.statistics}}, {options.mesh});
     return verify_pack(session, options);
   }
-  if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
+  if (options.points.path.empty()) {
+    // Opening it says what is wrong with it.
+    if (options.mesh.ends_with(".pack"))
+      packs::PackReader(options.mesh, options.points.limits.budget());
+    throw UsageError(fmt::format(
+        "--points is missing: the points that {} should be the triangulation of (only packs are "
+        "checked by themselves)",
+        options.mesh));
+  }
   std::vector<std::string> inputs = options.points.paths;
   inputs.push_back(options.mesh);
   check_outputs({{"--stats", options.statistics}}, inputs);

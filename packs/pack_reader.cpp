@@ -119,8 +119,10 @@ void PackReader::open(std::uint64_t bytes, const files::MemoryBudget& memory) {
   for (const MeshRow& row : meshes_) scene_.meshes.push_back(mesh_without_triangles(row));
   first_primitives_ = {0};
   for (const scenes::Instance& instance : scene_.instances) {
-    first_primitives_.push_back(first_primitives_.back() + meshes_[instance.mesh].triangles);
-    vertices_ += meshes_[instance.mesh].vertices;
+    const MeshRow& mesh = meshes_[instance.mesh];
+    first_primitives_.push_back(first_primitives_.back() + mesh.triangles);
+    if (mesh.shape.kind != scenes::Shape::Kind::triangle) splats_ += mesh.triangles;
+    vertices_ += mesh.vertices;
   }
 }
 

@@ -40,7 +40,10 @@ class PackReader {
   std::uint32_t mesh_of(std::uint32_t page) const;  // O(log meshes)
   // As scenes::first_primitives, of the scene that was packed.
   std::span<const std::uint64_t> first_primitives() const { return first_primitives_; }
-  std::uint64_t vertices() const { return vertices_; }  // of all instances
+  // Of all instances: triangles, points and segments, and vertices.
+  std::uint64_t triangles() const { return first_primitives_.back() - splats_; }
+  std::uint64_t splats() const { return splats_; }
+  std::uint64_t vertices() const { return vertices_; }
   std::uint64_t file_bytes() const { return file_bytes_; }
   const std::string& name() const { return name_; }
 
@@ -68,7 +71,7 @@ class PackReader {
   std::vector<PageRow> pages_;
   std::vector<Group> groups_;
   std::vector<std::uint64_t> first_primitives_;
-  std::uint64_t vertices_ = 0;
+  std::uint64_t vertices_ = 0, splats_ = 0;
 };
 
 }  // namespace delray::packs

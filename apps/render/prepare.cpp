@@ -168,11 +168,8 @@ std::shared_ptr<Prepared> open_pack(const RenderRequest& request) {
                                                   request.scene.file.limits.budget());
   prepared->scene = pack->take_scene();
   if (!request.scene.up.empty()) prepared->scene.z_up = request.scene.up == "z";
-  prepared->triangles = pack->first_primitives().back();
-  for (const scenes::Instance& instance : prepared->scene.instances) {
-    const packs::MeshRow& mesh = pack->meshes()[instance.mesh];
-    if (mesh.shape.kind != scenes::Shape::Kind::triangle) prepared->points += mesh.triangles;
-  }
+  prepared->triangles = pack->triangles();
+  prepared->points = pack->splats();
   prepared->vertices = pack->vertices();
   prepared->pack = std::move(pack);
   return prepared;

@@ -296,6 +296,53 @@ TEST(Pack, IsDescribed) {
   EXPECT_EQ(description["levels"], statistics["result"]["levels"]);
 }
 
+TEST(Pack, OfPointsHasNoTriangles) {
+  const Folder folder;
+  ASSERT_EQ(
+      run("delray generate points uniform -n 3000 --dim 3 -o p.ply -q", folder.path()).exit_code,
+      0);
+  const Ran packed =
+      run("delray pack p.ply --show-as points -o s.pack --stats s.json", folder.path());
+  ASSERT_EQ(packed.exit_code, 0) << packed.err;
+  EXPECT_NE(packed.err.find("s.pack: 3000 points and lines in "), std::string::npos) << packed.err;
+  const Json statistics = Json::parse(folder.read("s.json"))["result"];
+  EXPECT_EQ(statistics["triangles"], 0);
+  EXPECT_EQ(statistics["points"], 3000);
+  const Json description = Json::parse(run("delray info s.pack --stats -", folder.path()).out);
+  EXPECT_EQ(description["triangles"], 0);
+  EXPECT_EQ(description["stored_triangles"], 0);
+  EXPECT_EQ(description["points"], 3000);
+  const Ran drawn = run("delray render s.pack -o p.png --size 64x48 --stats r.json", folder.path());
+  EXPECT_NE(drawn.err.find("64 x 48, 3000 points and lines"), std::string::npos) << drawn.err;
+  const Json scene = Json::parse(folder.read("r.json"))["scene"];
+  EXPECT_EQ(scene["triangles"], 0);
+  EXPECT_EQ(scene["points"], 3000);
+}
+
+TEST(Pack, TerminationLeavesNothing) {
+  const Folder folder;
+  // Told to end once the program catches SIGTERM, in half a minute of work.
+  const Ran ran =
+      run("delray pack gen:terrain:3000000 -o s.pack & "
+          "pid=$!; until grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$pid/status; do sleep 0.1; done; "
+          "sleep 2; kill -TERM $pid; wait $pid",
+          folder.path());
+  EXPECT_EQ(ran.exit_code, 130) << ran.err;
+  EXPECT_EQ(run("ls -A | wc -l", folder.path()).out, "0\n");
+}
+
+TEST(Pack, VerifyNamesWhatIsNone) {
+  const Folder folder;
+  folder.write("bad.pack", "not one");
+  folder.write("mesh.off", "OFF 0 0 0");
+  const Ran bad = run("delray verify bad.pack", folder.path());
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_NE(bad.err.find("bad.pack: this is not a pack"), std::string::npos) << bad.err;
+  const Ran mesh = run("delray verify mesh.off", folder.path());
+  EXPECT_EQ(mesh.exit_code, 2);
+  EXPECT_NE(mesh.err.find("mesh.off"), std::string::npos) << mesh.err;
+}
+
 TEST(Pack, WrongUsageIsTwo) {
   const Folder folder;
   ASSERT_EQ(run("delray pack gen:cornell -o s.pack -q", folder.path()).exit_code, 0);
