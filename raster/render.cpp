@@ -172,7 +172,11 @@ struct Renderer::Frame {
                  check_parts(memory, whole), options_of_window(whole))),
         screen(screen_of(camera, whole)),
         recording(communicator, events),
-        rank{recording, memory.scene, screen, options, progress, scratch, memory.memory} {}
+        rank{recording, memory.scene, screen, options, progress, scratch, memory.memory} {
+    // A frame that changes the picture's memory without saying what is clear, or has another's,
+    // leaves nothing known of it.
+    scratch.taken = std::exchange(scratch.clear_in, nullptr);
+  }
 
   const Strategy& strategy() const { return *find_strategy(options.strategy); }
 

@@ -10,6 +10,7 @@
 #endif
 
 #include <hwy/highway.h>
+#include <bit>
 #include <cstring>
 
 #include "shading/arithmetic.h"
@@ -163,6 +164,7 @@ HWY_INLINE LaneMask bits_of(M mask, int i) {
   HWY_ALIGN std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(FloatTag(), mask, bytes);
   std::uint16_t bits;
+  static_assert(std::endian::native == std::endian::little);  // one load, not two bytes
   std::memcpy(&bits, bytes, sizeof(bits));
   return static_cast<LaneMask>(bits) << i;
 }

@@ -90,15 +90,13 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
   raster::PackMemory memory;
   // Blocks of the heap are never as full as they could be.
   memory.cache_bytes = std::max(left > other ? (left - other) / 4 * 3 / ranks : 0, kLeast);
-  memory.one_frame = request.frames == 1 && !request.is_animation() && !request.layout.wall &&
-                     !comes_in_bands(request);
   return memory;
 }
 
 }  // namespace
 
 FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
-                             const RenderRequest& request, parallel::Progress* progress)
+                             const RenderRequest& request, parallel::Progress* progress, int frames)
     : prepared_(prepared), request_(request), progress_(progress) {
   if (prepared.pack && request.engine == Engine::raytrace) {
     const geometry::Box3 box = scenes::bounds(packs::farthest_points(*prepared.pack));
@@ -109,8 +107,9 @@ FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& p
     return;
   }
   if (prepared.pack) {
-    raster_.emplace(*prepared.pack, prepared.scene, pack_memory(request, prepared),
-                    prepared.shader);
+    raster::PackMemory memory = pack_memory(request, prepared);
+    memory.one_frame = frames == 1;
+    raster_.emplace(*prepared.pack, prepared.scene, memory, prepared.shader);
     return;
   }
   if (request.engine == Engine::raster) {
@@ -229,7 +228,7 @@ std::unique_ptr<raster::FrameInSteps> FrameRenderer::begin(comm::Communicator& c
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
                      const RenderRequest& request, parallel::Progress* progress,
                      const std::function<void(Picture&&)>& preview) {
-  FrameRenderer renderer(communicator, prepared, request, progress);
+  FrameRenderer renderer(communicator, prepared, request, progress, request.frames);
   renderer.set_preview(preview);
   Frames frames;
   if (request.frames > 1) frames.picture = renderer.render(communicator, prepared.camera).picture;

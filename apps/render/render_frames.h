@@ -57,9 +57,10 @@ struct Growth {
 // Either engine, ready for any number of frames. One per rank; refers to what it is given.
 class FrameRenderer {
  public:
-  // Collective: with some --data this rank makes its part of the scene.
+  // Collective: with some --data this rank makes its part of the scene. `frames`: how many will be
+  // rendered; 0: nobody knows.
   FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
-                const RenderRequest& request, parallel::Progress* progress);
+                const RenderRequest& request, parallel::Progress* progress, int frames = 0);
   // The time of that part.
   double load_seconds() const { return load_seconds_; }
   double build_seconds() const { return build_seconds_; }

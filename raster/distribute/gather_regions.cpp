@@ -52,18 +52,17 @@ bool is_empty(const image::BasicImage<Colour>& image, const geometry::Rect& rect
   return empty;
 }
 
-// A message of some pixels and what is known of some parts.
-template <class Colour>
+// A message of some pixels and what is known of some parts; Byte is const to read it.
+template <class Colour, class Byte>
 struct Pieces {
-  Pieces(std::byte* message, std::size_t pixels)
+  Pieces(Byte* message, std::size_t pixels)
       : colour(message),
         depth(colour + pixels * sizeof(Colour)),
         there(depth + pixels * sizeof(float)) {}
-  static std::size_t bytes(std::size_t pixels, std::size_t parts) {
-    return pixels * (sizeof(Colour) + sizeof(float)) + parts;
-  }
-  std::byte *colour, *depth, *there;
+  Byte *colour, *depth, *there;
 };
+template <class Colour>
+constexpr std::size_t kPixelBytes = sizeof(Colour) + sizeof(float);
 
 template <class Colour>
 comm::Buffer packed(const loadbalance::Partition& partition, int owner, const ImageTiles& tiles,
@@ -75,9 +74,9 @@ comm::Buffer packed(const loadbalance::Partition& partition, int owner, const Im
     there.push_back(empty ? 0 : 1);
     if (there.back() != 0) pixels += static_cast<std::size_t>(rect.area());
   });
-  comm::Buffer message(Pieces<Colour>::bytes(pixels, there.size()));
+  comm::Buffer message(pixels * kPixelBytes<Colour> + there.size());
   if (there.empty()) return message;
-  Pieces<Colour> to(message.data(), pixels);
+  Pieces<Colour, std::byte> to(message.data(), pixels);
   std::memcpy(to.there, there.data(), there.size());
   const std::uint8_t* next = there.data();
   for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t) {
@@ -93,12 +92,12 @@ comm::Buffer packed(const loadbalance::Partition& partition, int owner, const Im
 }
 
 template <class Colour>
-void unpack(comm::Buffer&& message, const loadbalance::Partition& partition, int owner,
+void unpack(const comm::Buffer& message, const loadbalance::Partition& partition, int owner,
             const ImageTiles& tiles, image::BasicImage<Colour>& image) {
   std::size_t parts = 0;
   for_each_part(partition, owner, tiles, [&](const geometry::Rect&, std::size_t) { ++parts; });
-  const std::size_t pixels = (message.size() - parts) / (sizeof(Colour) + sizeof(float));
-  Pieces<Colour> from(message.data(), pixels);
+  const std::size_t pixels = (message.size() - parts) / kPixelBytes<Colour>;
+  Pieces<Colour, const std::byte> from(message.data(), pixels);
   for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t tile) {
     const bool there = *from.there++ != std::byte{0};
     if (!there && !tiles.clear.empty() && tiles.clear[tile] != 0) return;

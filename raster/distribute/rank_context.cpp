@@ -1,8 +1,8 @@
 // The code that strategies share on a rank: its equal part of the primitives, drawings of regions
 // with their counts, tiles stored into an image, and the gather of regions on rank 0.
 //
-// A single rank remembers which tiles it left clear in a picture's memory, and does not clear them
-// again. Degenerate: with fewer primitives than ranks some have none.
+// Ranks remember which tiles they left clear in a picture's memory, and do not clear them again.
+// Degenerate: with fewer primitives than ranks some have none.
 #include "raster/distribute/rank_context.h"
 
 #include <algorithm>
@@ -182,8 +182,6 @@ Picture RankContext::gather(const loadbalance::Partition& partition,
 
 template <class Colour>
 image::BasicImage<Colour> RankContext::take_image(int width, int height) {
-  // Whoever changes the image without saying what is clear leaves nothing known of it.
-  scratch.taken = std::exchange(scratch.clear_in, nullptr);
   if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
       spare != nullptr && spare->width == width && spare->height == height)
     return std::exchange(*spare, {});

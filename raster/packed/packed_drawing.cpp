@@ -39,6 +39,7 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
   list_.clusters.resize(pages_.size() * packs::kPageClusters);
   list_.draws.reserve(pages_.size());
   std::uint64_t bytes = 0;  // of all pages in memory, about
+  std::vector<bool> seen(packed.pack.pages().size());
   for (const PlacedPage& page : pages_) {
     const scenes::Instance& instance = scene.instances[page.instance];
     const scenes::Mesh& mesh = scene.meshes[instance.mesh];
@@ -46,7 +47,12 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
         {&mesh, &instance.transform, nullptr, nullptr, widening_of(rank, packed, mesh, page.page)});
     const packs::PageRow& row = packed.pack.pages()[page.page];
     list_.triangles += row.triangles;
-    bytes += row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
+    if (seen[page.page]) {  // of another instance
+      pages_repeat_ = true;
+    } else {
+      bytes += row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
+    }
+    seen[page.page] = true;
   }
   // Memory that was another page's before is mostly larger.
   constexpr std::uint64_t kSlack = 2;
@@ -125,7 +131,8 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
 }
 
 void PackedDrawing::need_not_keep() {
-  if (packed_.one_frame) packed_.cache.set_limit(std::min(kPassingBytes, packed_.cache.limit()));
+  if (packed_.one_frame && !pages_repeat_)
+    packed_.cache.set_limit(std::min(kPassingBytes, packed_.cache.limit()));
 }
 
 void PackedDrawing::count() { rank_.pack.cache += packed_.cache.counts() - before_; }

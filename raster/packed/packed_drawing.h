@@ -11,8 +11,8 @@
 
 namespace delray::raster {
 
-// A draw for each page, whose mesh is in memory while it is drawn, and again while tiles that show
-// it are shaded. One frame of one rank.
+// A draw for each page, whose mesh is in memory while it is drawn and, unless all pages stay, again
+// while tiles that show it are shaded. One frame of one rank.
 class PackedDrawing final : public MeshHolder {
  public:
   // `pages` are what the rank draws, ascending; the same rank and scene as of visible_pages().
@@ -42,6 +42,7 @@ class PackedDrawing final : public MeshHolder {
   const packs::CacheCounts before_;
   DrawList list_;
   bool keeps_all_ = false;
+  bool pages_repeat_ = false;  // a page may be drawn for each of several instances
   std::mutex mutex_;
   // By draw.
   std::vector<std::uint32_t> holders_;

@@ -171,6 +171,13 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
   rasterize_masked(task.screen, rect, worker.result.triangles, entries, alpha_test, tile);
 }
 
+// Others wait for it, also where this thread throws.
+struct LockedTile {
+  FrameTiles& tiles;
+  const int number;
+  ~LockedTile() { tiles.unlock(number); }
+};
+
 // Tiles that another thread has at the moment come later.
 void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) {
   std::erase_if(worker.touched, [&](const Worker::TouchedTile& touched) {
@@ -181,9 +188,9 @@ void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) 
     std::erase_if(worker.touched, [&](const Worker::TouchedTile& touched) {
       const auto tile = static_cast<int>(touched.tile);
       if (!tiles.try_lock(tile)) return false;
+      const LockedTile locked{tiles, tile};
       draw_into(task, touched, worker, tiles);
       if (task.tile_drawn) task.tile_drawn(tile, tiles.open(tile));
-      tiles.unlock(tile);
       return true;
     });
     if (worker.touched.size() == before) std::this_thread::yield();

@@ -157,6 +157,41 @@ HWY_INLINE void for_each_pixel(const SpotsToSetUp& spots, const Lanes& lanes, st
   }
 }
 
+// The pixels of a row of each spot, as bits: bit reach + i is the one i to the right of its own.
+//
+// A pixel of the row is covered where dx^2 < n = radius^2 - dy^2. Of n - 1 < 2^22 the root of
+// floats has the right whole part, as the next whole number is further than rounding reaches.
+struct RowOfSpots {
+  I clip_low, clip_high;  // i that the clip leaves
+  I to_centre;            // from a spot to the centre of its own pixel
+
+  RowOfSpots(const SpotsToSetUp& spots, const Lanes& lanes) {
+    const Ints d;
+    clip_low = hn::Sub(hn::Set(d, spots.clip.x0), lanes.column);
+    clip_high = hn::Sub(hn::Set(d, spots.clip.x1 - 1), lanes.column);
+    to_centre = hn::Sub(hn::Set(d, kHalfPixel), hn::And(lanes.x, hn::Set(d, kSubpixels - 1)));
+  }
+  I bits(I n, Mask in_row, bool is_own, std::int32_t reach) const {
+    const Ints d;
+    const Floats df;
+    const I zero = hn::Zero(d), one = hn::Set(d, 1);
+    const I root = hn::ConvertTo(d, hn::Sqrt(hn::ConvertTo(df, hn::Max(hn::Sub(n, one), zero))));
+    I low = hn::Neg(hn::ShiftRight<kSubpixelBits>(hn::Add(root, to_centre)));
+    I high = hn::ShiftRight<kSubpixelBits>(hn::Sub(root, to_centre));
+    if (is_own) {  // the own pixel is covered however small the spot is
+      low = hn::Min(low, zero);
+      high = hn::Max(high, zero);
+    } else {
+      in_row = hn::And(in_row, hn::Gt(n, zero));
+    }
+    low = hn::Max(low, clip_low);
+    high = hn::Min(high, clip_high);
+    in_row = hn::AndNot(hn::Gt(low, high), in_row);
+    const I first = hn::Add(low, hn::Set(d, reach)), end = hn::Add(high, hn::Set(d, reach + 1));
+    return hn::IfThenElseZero(in_row, hn::Sub(hn::Shl(one, end), hn::Shl(one, first)));
+  }
+};
+
 HWY_INLINE void append(I v, Mask mask, std::uint32_t* to) {
   const hn::RebindToUnsigned<Ints> du;
   append(hn::BitCast(du, v), hn::RebindMask(du, mask), to);
@@ -190,12 +225,20 @@ HWY_INLINE Mask append_windows(const SpotsToSetUp& spots, const Lanes& lanes, st
                                SetUpResult& result) {
   const Ints d;
   I upper = hn::Zero(d), lower = hn::Zero(d);
-  for_each_pixel(spots, lanes, reach, [&](std::int32_t i, std::int32_t j, Mask covered) HWY_ATTR {
-    const int bit = (j + reach) * WindowSpots::kWindow + i + reach;
-    I& half = bit < 32 ? upper : lower;
-    half = hn::Or(
-        half, hn::IfThenElseZero(covered, hn::Set(d, static_cast<std::int32_t>(1U << (bit & 31)))));
-  });
+  const RowOfSpots row(spots, lanes);
+  const I none = hn::Set(d, -1), squared = hn::Mul(lanes.radius, lanes.radius);
+  const I y0 = hn::Set(d, spots.clip.y0), height = hn::Set(d, spots.clip.height());
+  const I to_centre = hn::Sub(hn::Set(d, kHalfPixel), hn::And(lanes.y, hn::Set(d, kSubpixels - 1)));
+  for (std::int32_t j = -reach; j <= reach; ++j) {
+    const I dy = hn::Add(to_centre, hn::Set(d, j * kSubpixels));
+    const I from_top = hn::Sub(hn::Add(lanes.row, hn::Set(d, j)), y0);
+    const Mask in_row =
+        hn::And(lanes.used, hn::And(hn::Gt(from_top, none), hn::Lt(from_top, height)));
+    const I bits = row.bits(hn::Sub(squared, hn::Mul(dy, dy)), in_row, j == 0, reach);
+    const int k = j + reach;
+    I& half = k < 4 ? upper : lower;
+    half = hn::Or(half, hn::ShiftLeftSame(bits, k % 4 * WindowSpots::kWindow));
+  }
   const Mask any = hn::Ne(hn::Or(upper, lower), hn::Zero(d));
   const I in_tile = hn::Set(d, kTileSize - 1), side = hn::Set(d, 2 * reach);
   const I x = hn::Sub(lanes.column, hn::Set(d, reach)), y = hn::Sub(lanes.row, hn::Set(d, reach));

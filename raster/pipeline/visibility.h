@@ -55,7 +55,7 @@ struct VisibilityTile {
   alignas(64) std::int64_t key[kTilePixels];
   alignas(64) std::int32_t farthest[kBlocks];
   std::uint32_t stale = 0;    // bit k: pixels of block k came nearer since farthest[k] was computed
-  std::uint32_t changed = 0;  // the same, for who looks at what has come nearer, and clears it
+  std::uint32_t changed = 0;  // a bit, too: splats may have come nearer; for who clears it
   int since_refresh = 0;      // small triangles and fragments drawn since
 
   // Nothing is seen in `rect` (pixels of the frame, within the tile). Outside it nothing ever will

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "parallel/arena.h"
@@ -98,21 +99,32 @@ TriangleBins bin_triangles(std::span<const SeenTriangles> seen, const geometry::
                         share.blocks[square] += static_cast<std::uint32_t>(count(blocks));
                       });
   });
+  // Where each square begins, and in it each share.
+  constexpr std::size_t kGrain = 512;
   bins.first.resize(squares + 1);
   bins.blocks.resize(squares);
+  std::vector<std::uint64_t> of_square(squares);
+  parallel::parallel_for(0, squares, kGrain, [&](std::size_t square) {
+    for (const Share& share : shares) {
+      bins.blocks[square] += share.blocks[square];
+      of_square[square] += share.triangles[square];
+    }
+  });
   std::uint64_t sum = 0;
   for (std::size_t square = 0; square < squares; ++square) {
     bins.first[square] = static_cast<std::uint32_t>(sum);
-    for (Share& share : shares) {
-      bins.blocks[square] += share.blocks[square];
-      const std::uint32_t its = share.triangles[square];
-      share.triangles[square] = static_cast<std::uint32_t>(sum);
-      sum += its;
-    }
+    sum += of_square[square];
   }
   if (sum > std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("--primary raster: triangles are seen in too many squares");
   bins.first[squares] = static_cast<std::uint32_t>(sum);
+  parallel::parallel_for(0, squares, kGrain, [&](std::size_t square) {
+    std::uint32_t next = bins.first[square];
+    for (Share& share : shares) {
+      const std::uint32_t its = std::exchange(share.triangles[square], next);
+      next += its;
+    }
+  });
   bins.triangles = std::make_unique_for_overwrite<BinnedTriangle[]>(sum);
   parallel::parallel_for(0, shares.size(), 1, [&](std::size_t s) {
     Share& share = shares[s];

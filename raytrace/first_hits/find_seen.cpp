@@ -143,8 +143,9 @@ HWY_INLINE shading::LaneMask put_squares(const Boxes& boxes, shading::LaneMask s
     if (s / 2 == 1) its = hn::And(its, hn::Gt(bottom, top));
     const I column = left + hn::Set(d, s % 2), row = top + hn::Set(d, s / 2);
     const I first_x = hn::ShiftLeft<2>(column), first_y = hn::ShiftLeft<2>(row);
-    const I low_x = hn::Max(x0 - first_x, zero), high_x = hn::Min(x1 - first_x, side);
-    const I low_y = hn::Max(y0 - first_y, zero), high_y = hn::Min(y1 - first_y, side);
+    const auto within = [&](I block) { return hn::Min(hn::Max(block, zero), side); };
+    const I low_x = within(x0 - first_x), high_x = within(x1 - first_x);
+    const I low_y = within(y0 - first_y), high_y = within(y1 - first_y);
     // A bit for the first block of each row, times the bits of a row.
     const auto between = [&](I low, I high) { return hn::Shl(one, high) - hn::Shl(one, low); };
     const I rows = hn::Set(d, 0x1111) & between(hn::ShiftLeft<2>(low_y), hn::ShiftLeft<2>(high_y));

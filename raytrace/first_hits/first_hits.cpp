@@ -192,8 +192,10 @@ double drawn_seconds(std::span<const SeenTriangles> seen, std::span<const MeshPa
   };
   for (const SeenTriangles& some : seen) {
     squares += static_cast<double>(some.in_squares.size());
-    for (std::size_t i = 0; i < some.in_squares.size(); i += kStep)
-      blocks += kStep * count(some.in_squares[i].blocks);
+    const std::size_t size = some.in_squares.size(), looked_at = (size + kStep - 1) / kStep;
+    double sum = 0;
+    for (std::size_t i = 0; i < size; i += kStep) sum += count(some.in_squares[i].blocks);
+    if (size > 0) blocks += sum * static_cast<double>(size) / static_cast<double>(looked_at);
     for (const WideTriangle& t : some.wide) {
       squares += along(t.x0, t.x1) * along(t.y0, t.y1);
       blocks += (t.x1 - t.x0) * (t.y1 - t.y0);

@@ -83,9 +83,9 @@ struct TriangleBins {
   }
 };
 
-// The triangles of which the nearest one is nearer come first. Parallel: threads share out the
-// parts. O(s), where s sums the squares of each triangle. Throws std::length_error for 2^32 of
-// them.
+// Of parts whose nearest triangle is nearer the triangles come first. Parallel: threads share out
+// the parts. O(s + squares threads) work, where s sums the squares of each triangle. Throws
+// std::length_error for 2^32 of them.
 TriangleBins bin_triangles(std::span<const SeenTriangles> seen, const geometry::Rect& window);
 
 }  // namespace delray::raytrace

@@ -321,11 +321,11 @@ TEST(Pack, OfPointsHasNoTriangles) {
 
 TEST(Pack, TerminationLeavesNothing) {
   const Folder folder;
-  // Told to end once the program catches SIGTERM, in half a minute of work.
+  // Told to end once the program catches SIGTERM, in a minute of work.
   const Ran ran =
-      run("delray pack gen:terrain:3000000 -o s.pack & "
-          "pid=$!; until grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$pid/status; do sleep 0.1; done; "
-          "sleep 2; kill -TERM $pid; wait $pid",
+      run("delray pack gen:terrain:5000000 -o s.pack & pid=$!; "
+          "until grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$pid/status || ! kill -0 $pid; "
+          "do sleep 0.1; done; sleep 2; kill -TERM $pid; wait $pid",
           folder.path());
   EXPECT_EQ(ran.exit_code, 130) << ran.err;
   EXPECT_EQ(run("ls -A | wc -l", folder.path()).out, "0\n");

@@ -36,14 +36,15 @@ TEST(GatherRegions, LeaveNothingOfFramesBefore) {
       for (const scenes::Camera& camera : cameras)
         expected.push_back(render(alone, scene, camera, plain).picture);
     });
-    std::vector<RenderOptions> ways(6, plain);
+    std::vector<RenderOptions> ways(7, plain);
     ways[0].strategy = ways[1].strategy = ways[2].strategy = "sort-first";
     ways[1].partition = "kd-split";
     ways[1].regions_per_rank = 3;
     ways[2].partition = "interlaced";
     ways[3].strategy = "sort-middle";
     ways[4].strategy = "hybrid";
-    ways[5].strategy = "sort-last";
+    ways[5].strategy = ways[6].strategy = "sort-last";
+    ways[6].shade = Shade::composited;
     for (const int ranks : {2, 3, 5}) {
       comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
         Renderer renderer(scene);
