@@ -126,10 +126,17 @@ Screen screen_of(const scenes::Camera& camera, const RenderOptions& options) {
 void to_distances(std::span<float> depths, const scenes::View& view) {
   constexpr std::size_t kGrain = 1 << 16;  // pixels: some ten microseconds
   parallel::parallel_blocks(0, depths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    // Branchless, so that the compiler vectorizes it.
-    for (std::size_t i = begin; i < end; ++i) {
-      const float distance = distance_of(depths[i], view);
-      depths[i] = depths[i] < 0 ? distance : depths[i];
+    constexpr std::size_t kRun = 64;
+    for (std::size_t first = begin; first < end; first += kRun) {
+      const std::size_t last = std::min(first + kRun, end);
+      // Branchless, so that the compiler vectorizes it; what shows nothing is not written to.
+      bool any = false;
+      for (std::size_t i = first; i < last; ++i) any |= depths[i] < 0;
+      if (!any) continue;
+      for (std::size_t i = first; i < last; ++i) {
+        const float distance = distance_of(depths[i], view);
+        depths[i] = depths[i] < 0 ? distance : depths[i];
+      }
     }
   });
 }

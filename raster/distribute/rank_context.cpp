@@ -58,16 +58,26 @@ RegionDrawing RankContext::begin(const DrawList& list, std::span<const geometry:
       scratch);
 }
 
-void RankContext::hide_behind_others(RegionDrawing& drawing) {
-  if (ranks() == 1 || prepared.transparent || in_steps || options.shade == Shade::immediate) return;
+geometry::Rect RankContext::hide_behind_others(RegionDrawing& drawing) {
+  if (ranks() == 1 || prepared.transparent || in_steps || options.shade == Shade::immediate)
+    return screen.frame();
   const double before = communicator.seconds();
   communicator.mark(comm::Phase::redistribute, 0);
-  std::vector<std::int32_t> farthest = drawing.farthest_of_blocks();
-  comm::all_reduce(communicator, std::span<std::int32_t>(farthest),
+  std::vector<std::int32_t> least = drawing.farthest_of_blocks();
+  const std::size_t blocks = least.size();
+  const geometry::Rect mine = drawing.tiles_seen();
+  least.insert(least.end(), {mine.x0, mine.y0, -mine.x1, -mine.y1});
+  comm::all_reduce(communicator, std::span<std::int32_t>(least),
                    [](std::int32_t a, std::int32_t b) { return std::min(a, b); });
-  drawing.hide_behind(std::move(farthest));
+  geometry::Rect seen{least[blocks], least[blocks + 1], -least[blocks + 2], -least[blocks + 3]};
+  if (seen.empty()) seen = {0, 0, 1, 1};
+  least.resize(blocks);
+  drawing.hide_behind(std::move(least));
   communicator.mark(comm::Phase::rasterize, 0);
   counts.phases.redistribute += communicator.seconds() - before;
+  return geometry::intersection(
+      {seen.x0 * kTileSize, seen.y0 * kTileSize, seen.x1 * kTileSize, seen.y1 * kTileSize},
+      screen.frame());
 }
 
 void RankContext::report_work(const RegionCounts& done) const {
@@ -160,6 +170,55 @@ image::BasicImage<Colour> RankContext::end_samples(RegionDrawing& drawing) {
 }
 
 template <class Colour>
+image::BasicImage<Colour> RankContext::end_part(RegionDrawing& drawing,
+                                                const geometry::Rect& part) {
+  auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.part);
+  const bool fits =
+      spare != nullptr && spare->width == part.width() && spare->height == part.height();
+  image::BasicImage<Colour> image =
+      fits ? std::exchange(*spare, {}) : image::BasicImage<Colour>(part.width(), part.height());
+  const Window<Colour> window{image.colour.data(), image.depth.data(), part.x0, part.y0,
+                              part.width()};
+  end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    for (const geometry::Rect& rect : rects) {
+      assert(tile.empty() || geometry::intersection(rect, part) == rect);
+      if (part.contains(rect.x0, rect.y0)) tile.shade(rect, window);
+    }
+  });
+  return image;
+}
+
+template <class Colour>
+image::BasicImage<Colour> RankContext::picture_around(const geometry::Rect& part,
+                                                      image::BasicImage<Colour>&& image) {
+  image::BasicImage<Colour> whole = take_image<Colour>(options.width, options.height);
+  const Window<Colour> window = window_of(whole);
+  std::vector<std::uint8_t>& clear = scratch.clear_tiles;
+  const auto tiles = static_cast<std::size_t>(screen.tiles());
+  if (scratch.taken != whole.colour.data() || clear.size() != tiles) clear.assign(tiles, 0);
+  parallel::parallel_for(0, tiles, 1, [&](std::size_t index) {
+    const geometry::Rect rect = screen.tile(static_cast<int>(index));
+    if (!part.contains(rect.x0, rect.y0)) {
+      if (clear[index] == 0) clear_pixels(rect, window);
+      clear[index] = 1;
+      return;
+    }
+    clear[index] = 0;
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      const std::size_t from =
+          static_cast<std::size_t>(y - part.y0) * static_cast<std::size_t>(part.width()) +
+          static_cast<std::size_t>(rect.x0 - part.x0);
+      const auto count = static_cast<std::size_t>(rect.width());
+      std::copy_n(image.colour.data() + from, count, whole.colour.data() + window.at(rect.x0, y));
+      std::copy_n(image.depth.data() + from, count, whole.depth.data() + window.at(rect.x0, y));
+    }
+  });
+  scratch.clear_in = whole.colour.data();
+  scratch.part = std::move(image);
+  return whole;
+}
+
+template <class Colour>
 Picture RankContext::gather(const loadbalance::Partition& partition,
                             image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
@@ -197,6 +256,10 @@ template void RankContext::render_pixels(const DrawList&, std::span<const geomet
                                          image::ImageF&);
 template image::Image8 RankContext::end_samples(RegionDrawing&);
 template image::ImageF RankContext::end_samples(RegionDrawing&);
+template image::Image8 RankContext::end_part(RegionDrawing&, const geometry::Rect&);
+template image::ImageF RankContext::end_part(RegionDrawing&, const geometry::Rect&);
+template image::Image8 RankContext::picture_around(const geometry::Rect&, image::Image8&&);
+template image::ImageF RankContext::picture_around(const geometry::Rect&, image::ImageF&&);
 template Picture RankContext::gather(const loadbalance::Partition&, image::Image8&&);
 template Picture RankContext::gather(const loadbalance::Partition&, image::ImageF&&);
 template image::Image8 RankContext::take_image(int, int);

@@ -79,8 +79,10 @@ struct RankContext {
   // A drawing of `list`, or of what it is given later, into regions (in pixels).
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
   // Finds how far each block of the screen is at most on any rank, so that none shades what another
-  // hides, where drawings are composited and that can be known in time. Collective.
-  void hide_behind_others(RegionDrawing& drawing);
+  // hides, where drawings are composited and that can be known in time. Returns the part of the
+  // screen, in samples, outside of which no rank has drawn anything, as far as is known; of whole
+  // tiles, and at least one. Collective.
+  geometry::Rect hide_behind_others(RegionDrawing& drawing);
   // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
   void end(RegionDrawing& drawing, FinishTile finish_tile);
   // As RegionDrawing::finish_rows, and counts; work is reported before rows_finished is called.
@@ -100,6 +102,14 @@ struct RankContext {
   // Ends a drawing of the whole frame with the samples of a pixel together: see samples.h.
   template <class Colour>
   image::BasicImage<Colour> end_samples(RegionDrawing& drawing);
+  // As end_pixels, into an image of a part of the frame, of whole tiles, outside of which nothing
+  // is drawn. REQUIRES: one sample per pixel.
+  template <class Colour>
+  image::BasicImage<Colour> end_part(RegionDrawing& drawing, const geometry::Rect& part);
+  // The picture of the frame that shows no more than such a part, whose memory the next frame gets.
+  template <class Colour>
+  image::BasicImage<Colour> picture_around(const geometry::Rect& part,
+                                           image::BasicImage<Colour>&& image);
   // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Of displays
   // their pictures, in `shown`. Collective.
   template <class Colour>

@@ -131,6 +131,24 @@ bool RegionDrawing::hides(const geometry::Rect& samples, float depth) const {
   return task_.options.skip_hidden_clusters && scratch_.tiles.is_hidden(wanted, depth);
 }
 
+geometry::Rect RegionDrawing::tiles_seen() const {
+  const int columns = task_.screen.tiles_x;
+  geometry::Rect seen{columns, task_.screen.tiles_y, 0, 0};
+  const auto include = [&](int tile) {
+    const int x = tile % columns, y = tile / columns;
+    seen = {std::min(seen.x0, x), std::min(seen.y0, y), std::max(seen.x1, x + 1),
+            std::max(seen.y1, y + 1)};
+  };
+  for (const TileJob& job : tiles_.jobs)
+    if (scratch_.tiles.is_drawn_in(job.tile)) include(job.tile);
+  for (const auto& worker : scratch_.workers) {
+    for (const auto* entries : {&worker->result.large_entries, &worker->result.blended_entries}) {
+      for (const SetUpResult::Entry& entry : *entries) include(static_cast<int>(entry.tile));
+    }
+  }
+  return seen;
+}
+
 RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
   RegionCounts counts;
   end_drawing_into(counts);

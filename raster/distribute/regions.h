@@ -15,6 +15,7 @@ namespace delray::raster {
 // Memory that one frame leaves to the next.
 struct Scratch {
   Picture spare;  // nobody's any more
+  Picture part;   // the same, of a part of a frame
   // By tile: whether it is clear in the picture whose colours are at `clear_in`, or `taken` when
   // that picture was taken for the frame at hand; and whether this rank's regions of it are.
   std::vector<std::uint8_t> clear_tiles, empty_tiles;
@@ -99,6 +100,8 @@ class RegionDrawing {
     return scratch_.tiles.farthest_of_blocks(task_.screen);
   }
   void hide_behind(std::vector<std::int32_t>&& codes) { hidden_behind_ = std::move(codes); }
+  // Columns and rows of tiles around all that is drawn by now, or waits for the end.
+  geometry::Rect tiles_seen() const;
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
   // parts of regions in it. Parallel. To be called once, in the end.
   RegionCounts finish(FinishTile finish_tile);

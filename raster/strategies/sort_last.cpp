@@ -184,7 +184,7 @@ std::unique_ptr<composite::Layer> mask_of(const RankContext& rank,
 template <class Colour>
 class Steps final : public FrameSteps {
  public:
-  explicit Steps(RankContext& rank) : rank_(rank) {}
+  explicit Steps(RankContext& rank) : rank_(rank), seen_(rank.screen.frame()) {}
 
   void transform() override {
     const geometry::Rect frame = rank_.frame();
@@ -217,8 +217,12 @@ class Steps final : public FrameSteps {
       rank_.communicator.mark(comm::Phase::compose, 0);  // ranks that do more than count do not
       layer_ = mask_of(rank_, image);
     } else {
-      layer_ =
-          composite::find_codec(rank_.options.codec)->make(rank_.end_samples<Colour>(*drawing_));
+      // The part is copied in the end.
+      is_part_ =
+          2 * seen_.area() <= rank_.screen.frame().area() && rank_.options.supersampling == 1;
+      layer_ = composite::find_codec(rank_.options.codec)
+                   ->make(is_part_ ? rank_.end_part<Colour>(*drawing_, seen_)
+                                   : rank_.end_samples<Colour>(*drawing_));
     }
     drop_drawing();
   }
@@ -243,7 +247,7 @@ class Steps final : public FrameSteps {
 
   // Between the first two, where the communicator may be used. Collective.
   void hide_behind_others() {
-    if (!shades_last() && !has_cells()) rank_.hide_behind_others(*drawing_);
+    if (!shades_last() && !has_cells()) seen_ = rank_.hide_behind_others(*drawing_);
   }
 
   // Whether tiles can go to their owners before all are finished.
@@ -305,9 +309,12 @@ class Steps final : public FrameSteps {
       return composite::gather(rank_.communicator, std::move(part), rank_.root);
     });
     image::BasicImage<Colour> image = composite::take_image<Colour>(std::move(part));
-    if (rank_.number() == rank_.root) return image;
+    if (rank_.number() == rank_.root) {
+      if (is_part_) return rank_.picture_around(seen_, std::move(image));
+      return image;
+    }
     // For the next frame. In steps the scratch memory is another frame's by now.
-    if (!rank_.in_steps) rank_.scratch.spare = std::move(image);
+    if (!rank_.in_steps) (is_part_ ? rank_.scratch.part : rank_.scratch.spare) = std::move(image);
     return image::BasicImage<Colour>();
   }
 
@@ -315,6 +322,8 @@ class Steps final : public FrameSteps {
   DrawList list_;
   std::unique_ptr<PackedDrawing> packed_;  // instead of the list
   std::unique_ptr<RegionDrawing> drawing_;
+  geometry::Rect seen_;                      // by any rank; set before it is rasterized
+  bool is_part_ = false;                     // layer_ has no more of the frame
   image::BasicImage<Colour> image_;          // a single rank's
   std::unique_ptr<composite::Layer> layer_;  // of one among several
   // With a cell for each rank.

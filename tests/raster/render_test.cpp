@@ -330,6 +330,23 @@ TEST(Render, CullsBackFacesOnlyOfSingleSidedMaterialsWhenAsked) {
   }
 }
 
+// Of a picture that shows something in a small part, ranks of sort-last composite that part.
+TEST(Render, SortLastSendsOfWhereSomethingIsSeen) {
+  const scenes::Scene scene = random_scene(6);
+  scenes::Camera camera = random_scene_camera();
+  camera.eye = camera.at + (camera.eye - camera.at) * 8.0F;
+  RenderOptions options;
+  options.width = 640;
+  options.height = 512;
+  options.scheme = "centralized";
+  const Result alone = rendered_alone(scene, camera, options),
+               last = rendered_alone(scene, camera, options, 3);
+  EXPECT_TRUE(same_bytes(last.picture, alone.picture));
+  EXPECT_GT(alone.statistics.fragments, 100U);
+  constexpr std::uint64_t kTileBytes = 64 * 64 * 8;
+  EXPECT_LE(last.statistics.ranks[1].bytes_sent, 9 * kTileBytes + 80 * 32 * 4 * 4);
+}
+
 TEST(Render, CountsWhatTravels) {
   const scenes::Scene scene = random_scene(6);
   RenderOptions options;
