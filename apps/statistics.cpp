@@ -24,7 +24,7 @@ std::uint64_t peak_memory() {
 }
 
 std::string primitives_text(std::uint64_t triangles, std::uint64_t splats) {
-  const std::string points = fmt::format("{} points and lines", splats);
+  std::string points = fmt::format("{} points and lines", splats);
   if (triangles == 0 && splats > 0) return points;
   return fmt::format("{} triangles{}{}", triangles, splats > 0 ? ", " : "",
                      splats > 0 ? points : "");

@@ -25,7 +25,9 @@ void for_each_part(const loadbalance::Partition& partition, int owner, const Ima
       for (int x = rect.x0 / tiles.side; x * tiles.side < rect.x1; ++x) {
         const geometry::Rect tile{x * tiles.side, y * tiles.side, (x + 1) * tiles.side,
                                   (y + 1) * tiles.side};
-        f(geometry::intersection(rect, tile), static_cast<std::size_t>(y * tiles.columns + x));
+        f(geometry::intersection(rect, tile),
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles.columns) +
+              static_cast<std::size_t>(x));
       }
     }
   }

@@ -55,9 +55,10 @@ TriangleBins bins_of(const Tracer& tracer, const SeenWindow& window, int threads
 
 std::vector<std::tuple<std::uint32_t, float, std::uint32_t>> all_of(const TriangleBins& bins) {
   std::vector<std::tuple<std::uint32_t, float, std::uint32_t>> all;
-  for (std::uint32_t i = 0; i < bins.first.back(); ++i)
-    all.emplace_back(bins.triangles[i].triangle, bins.triangles[i].nearest,
-                     bins.triangles[i].blocks);
+  for (std::uint32_t i = 0; i < bins.first.back(); ++i) {
+    const BinnedTriangle& t = bins.triangles[i];
+    all.emplace_back(t.triangle, t.nearest, t.blocks);
+  }
   return all;
 }
 
