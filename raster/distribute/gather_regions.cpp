@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "comm/bad_message.h"
 #include "loadbalance/deliver.h"
+#include "raster/shading/shade_tile.h"
 
 namespace delray::raster {
 namespace {
@@ -98,23 +100,25 @@ void unpack(const comm::Buffer& message, const loadbalance::Partition& partition
             const ImageTiles& tiles, image::BasicImage<Colour>& image) {
   std::size_t parts = 0;
   for_each_part(partition, owner, tiles, [&](const geometry::Rect&, std::size_t) { ++parts; });
-  const std::size_t pixels = (message.size() - parts) / kPixelBytes<Colour>;
+  comm::check_message(message.size() >= parts);
+  const std::byte* there = message.data() + message.size() - parts;
+  std::size_t pixels = 0;
+  for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t) {
+    if (*there++ != std::byte{0}) pixels += static_cast<std::size_t>(rect.area());
+  });
+  comm::check_message(message.size() == pixels * kPixelBytes<Colour> + parts);
   Pieces<Colour, const std::byte> from(message.data(), pixels);
   for_each_part(partition, owner, tiles, [&](const geometry::Rect& rect, std::size_t tile) {
-    const bool there = *from.there++ != std::byte{0};
-    if (!there && !tiles.clear.empty() && tiles.clear[tile] != 0) return;
+    const bool is_there = *from.there++ != std::byte{0};
+    if (!is_there && !tiles.clear.empty() && tiles.clear[tile] != 0) return;
     if (!tiles.clear.empty()) {
       const bool whole = rect.x0 % tiles.side == 0 && rect.y0 % tiles.side == 0 &&
                          rect.width() == std::min(tiles.side, image.width - rect.x0) &&
                          rect.height() == std::min(tiles.side, image.height - rect.y0);
-      tiles.clear[tile] = !there && whole ? 1 : 0;
+      tiles.clear[tile] = !is_there && whole ? 1 : 0;
     }
+    if (!is_there) return clear_pixels(rect, window_of(image));
     for_each_row(rect, image.width, [&](std::size_t pixel, std::size_t count) {
-      if (!there) {
-        std::fill_n(image.colour.data() + pixel, count, Colour{});
-        std::fill_n(image.depth.data() + pixel, count, image::kEmptyDepth);
-        return;
-      }
       std::memcpy(image.colour.data() + pixel, from.colour, count * sizeof(Colour));
       std::memcpy(image.depth.data() + pixel, from.depth, count * sizeof(float));
       from.colour += count * sizeof(Colour);

@@ -45,7 +45,7 @@ TEST(GatherRegions, LeaveNothingOfFramesBefore) {
     ways[4].strategy = "hybrid";
     ways[5].strategy = ways[6].strategy = "sort-last";
     ways[6].shade = Shade::composited;
-    for (const int ranks : {2, 3, 5}) {
+    for (const int ranks : {1, 2, 3, 5}) {
       comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
         Renderer renderer(scene);
         std::mt19937 same(static_cast<unsigned>(ranks));  // on all ranks

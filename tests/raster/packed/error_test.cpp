@@ -188,27 +188,37 @@ TEST(PackedError, IsTheSameInAWindow) {
   }
 }
 
+scenes::Scene scene_of_points(std::vector<glm::vec3> places, const scenes::Shape& shape) {
+  scenes::Scene scene;
+  scene.meshes.emplace_back().positions = std::move(places);
+  scene.instances.push_back({});
+  scene.materials.emplace_back();
+  scenes::make_points(scene.meshes[0], shape);
+  return scene;
+}
+scenes::Camera camera_above_points() {
+  scenes::Camera camera;
+  camera.eye = {0.2F, 1.5F, 1.7F};
+  return camera;
+}
+
 // What is left out of the first level was at the same places, far from each other.
 TEST(PackedError, OfPointsThatStandForNoOthersIsNone) {
   const tests::TemporaryFolder folder;
   std::mt19937 random(20261128);
   std::uniform_real_distribution<float> both(-1, 1);
-  scenes::Scene scene;
-  scenes::Mesh& mesh = scene.meshes.emplace_back();
+  std::vector<glm::vec3> places;
   for (int i = 0; i < 100; ++i) {
     const glm::vec3 place(both(random), 0, both(random));
-    for (int k = 0; k < 60; ++k) mesh.positions.push_back(place);
+    places.insert(places.end(), 60, place);
   }
-  scene.instances.push_back({});
-  scene.materials.emplace_back();
-  scenes::make_points(mesh, {scenes::Shape::Kind::point, true, 2.0F});
-  packs::write_pack(folder / "a.pack", scene);
+  packs::write_pack(folder / "a.pack",
+                    scene_of_points(places, {scenes::Shape::Kind::point, true, 2.0F}));
   const packs::PackReader pack(folder / "a.pack");
   RenderOptions options;
   options.width = 100;
   options.height = 75;
-  scenes::Camera camera;
-  camera.eye = {0.2F, 1.5F, 1.7F};
+  const scenes::Camera camera = camera_above_points();
   const Result exact = of_pack(pack, camera, options);
   options.error = 0.5;
   const Result coarse = of_pack(pack, camera, options);
@@ -220,23 +230,18 @@ TEST(PackedError, OfPointsLeavesNoGaps) {
   const tests::TemporaryFolder folder;
   std::mt19937 random(20261129);
   std::uniform_real_distribution<float> both(-1, 1);
-  scenes::Mesh mesh;
-  for (int i = 0; i < 20000; ++i) mesh.positions.emplace_back(both(random), 0, both(random));
+  std::vector<glm::vec3> places;
+  for (int i = 0; i < 20000; ++i) places.emplace_back(both(random), 0, both(random));
   for (const bool in_pixels : {false, true}) {
-    scenes::Scene scene;
-    scene.meshes.push_back(mesh);
-    scene.instances.push_back({});
-    scene.materials.emplace_back();
-    scenes::make_points(scene.meshes[0],
-                        {in_pixels ? scenes::Shape::Kind::point : scenes::Shape::Kind::sphere,
-                         in_pixels, in_pixels ? 1.0F : 0.01F});
-    packs::write_pack(folder / "a.pack", scene);
+    packs::write_pack(folder / "a.pack",
+                      scene_of_points(places, {in_pixels ? scenes::Shape::Kind::point
+                                                         : scenes::Shape::Kind::sphere,
+                                               in_pixels, in_pixels ? 1.0F : 0.01F}));
     const packs::PackReader pack(folder / "a.pack");
     RenderOptions options;
     options.width = 100;
     options.height = 75;
-    scenes::Camera camera;
-    camera.eye = {0.2F, 1.5F, 1.7F};
+    const scenes::Camera camera = camera_above_points();
     const Result exact = of_pack(pack, camera, options);
     options.error = 2;
     const Result coarse = of_pack(pack, camera, options, 2);

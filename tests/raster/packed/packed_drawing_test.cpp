@@ -120,7 +120,7 @@ TEST(PackedDrawing, CountsWhatItReads) {
   });
 }
 
-// Points of one colour each, by the number of the mesh, of all kinds and sizes.
+// Points of one colour each, of all kinds and sizes, some of them twice.
 scenes::Scene plain_points(unsigned seed) {
   using Kind = scenes::Shape::Kind;
   std::mt19937 random(seed);
@@ -144,7 +144,15 @@ scenes::Scene plain_points(unsigned seed) {
       scene.meshes.push_back(std::move(mesh));
     }
   }
+  glm::mat4x3 beside(1.0F);
+  beside[3] = {0.3F, -0.2F, -0.6F};
+  scene.instances.push_back({1, beside});
   return scene;
+}
+scenes::Camera camera_before_points() {
+  scenes::Camera camera;
+  camera.eye = {0.4F, 0.3F, 3.0F};
+  return camera;
 }
 
 TEST(PackedDrawing, LooksUpColoursOfPointsBeforeTheirPagesGo) {
@@ -152,8 +160,7 @@ TEST(PackedDrawing, LooksUpColoursOfPointsBeforeTheirPagesGo) {
   const scenes::Scene scene = plain_points(20261128);
   packs::write_pack(folder / "a.pack", scene, {.levels = false});
   const packs::PackReader pack(folder / "a.pack");
-  scenes::Camera camera;
-  camera.eye = {0.4F, 0.3F, 3.0F};
+  const scenes::Camera camera = camera_before_points();
   for (const bool one_frame : {false, true}) {
     for (const bool float_pixels : {false, true}) {
       for (const int samples : {1, 2}) {
@@ -188,8 +195,7 @@ TEST(PackedDrawing, ReadsPagesOfPlainPointsOnce) {
   scene.instances = {{}};
   packs::write_pack(folder / "a.pack", scene, {.levels = false});
   const packs::PackReader pack(folder / "a.pack");
-  scenes::Camera camera;
-  camera.eye = {0.4F, 0.3F, 3.0F};
+  const scenes::Camera camera = camera_before_points();
   RenderOptions options;
   options.width = 640;
   options.height = 480;
@@ -205,8 +211,7 @@ TEST(PackedDrawing, KeepsPagesOfPlainPointsWhereTheyFit) {
   const scenes::Scene scene = plain_points(20261129);
   packs::write_pack(folder / "a.pack", scene, {.levels = false});
   const packs::PackReader pack(folder / "a.pack");
-  scenes::Camera camera;
-  camera.eye = {0.4F, 0.3F, 3.0F};
+  const scenes::Camera camera = camera_before_points();
   RenderOptions options;
   options.width = 150;
   options.height = 110;

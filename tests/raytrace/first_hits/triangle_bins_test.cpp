@@ -35,6 +35,12 @@ scenes::Scene some_triangles(unsigned seed) {
   return scene;
 }
 
+scenes::View view_from(float z, int width, int height) {
+  scenes::Camera camera;
+  camera.eye = {0, 0, z};
+  return scenes::make_view(camera, width, height);
+}
+
 TriangleBins bins_of(const Tracer& tracer, const SeenWindow& window, int threads) {
   TriangleBins bins;
   parallel::Arena arena(threads);
@@ -65,9 +71,7 @@ std::vector<std::tuple<std::uint32_t, float, std::uint32_t>> all_of(const Triang
 TEST(TriangleBins, HaveEveryTriangleThatARayMeetsOnEveryTarget) {
   const scenes::Scene scene = some_triangles(5);
   const Tracer tracer = make_tracer(scene);
-  scenes::Camera camera;
-  camera.eye = {0, 0, 4};
-  const scenes::View view = scenes::make_view(camera, 230, 150);
+  const scenes::View view = view_from(4, 230, 150);
   const SeenWindow window{view, {13, 7, 230, 150}, 2.0F};
   const scenes::Mesh& mesh = scene.meshes[0];
   tests::for_each_target([&] {
@@ -114,9 +118,7 @@ TEST(TriangleBins, HaveEveryTriangleThatARayMeetsOnEveryTarget) {
 TEST(TriangleBins, AreTheSameForEveryNumberOfThreads) {
   const scenes::Scene scene = some_triangles(6);
   const Tracer tracer = make_tracer(scene);
-  scenes::Camera camera;
-  camera.eye = {0, 0, 2};
-  const scenes::View view = scenes::make_view(camera, 300, 200);
+  const scenes::View view = view_from(2, 300, 200);
   const SeenWindow window{view, {0, 0, 300, 200}, 2.0F};
   const TriangleBins one = bins_of(tracer, window, 1);
   for (const int threads : {2, 5, 40}) {
