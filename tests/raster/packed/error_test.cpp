@@ -230,8 +230,10 @@ TEST(PackedError, OfPointsLeavesNoGaps) {
   const tests::TemporaryFolder folder;
   std::mt19937 random(20261129);
   std::uniform_real_distribution<float> both(-1, 1);
+  constexpr int kPoints = 20000;
   std::vector<glm::vec3> places;
-  for (int i = 0; i < 20000; ++i) places.emplace_back(both(random), 0, both(random));
+  places.reserve(kPoints);
+  for (int i = 0; i < kPoints; ++i) places.emplace_back(both(random), 0, both(random));
   for (const bool in_pixels : {false, true}) {
     packs::write_pack(folder / "a.pack",
                       scene_of_points(places, {in_pixels ? scenes::Shape::Kind::point
