@@ -22,6 +22,7 @@ struct BorrowedPixels {
   // Operator::nearest takes pixels of this depth and deeper ones, and NaN, for empty, whatever
   // their colour, Operator::over those with an alpha of 0.
   float empty_depth = 1;
+  Colour background{};  // of the layer's pixels that are empty: see ImageLayer::set_background
 };
 
 // A layer that understands, and is understood by, those of codec "active". `image` gives its size

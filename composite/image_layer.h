@@ -36,8 +36,12 @@ class ImageLayer : public Layer {
   image::BasicImage<Colour>& image() { return image_; }
   const image::BasicImage<Colour>& image() const { return image_; }
 
-  // From now on only colours travel, as with Operator::over.
-  void forget_depth() { operator_ = Operator::over; }
+  // From now on only colours travel, of the pixels that were covered till then, and depths are not
+  // changed any more: what is replaced is not to be encoded again.
+  void forget_depth() { forgets_depth_ = true; }
+  // The colour of pixels that nothing covers, {} if not set: what replaces others by nothing leaves
+  // it. Those that are there already are not changed. REQUIRES: Operator::nearest; alike on ranks.
+  void set_background(Colour colour) { background_ = colour; }
 
   std::uint64_t pixels() const final { return image_.pixels(); }
   int format() const final { return static_cast<int>(operator_); }
@@ -65,7 +69,9 @@ class ImageLayer : public Layer {
   // Does `action` with what encode(range) gave elsewhere; returns the pixels that it looked at.
   virtual std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) = 0;
 
-  bool has_depth() const { return operator_ != Operator::over; }
+  // Whether depths travel.
+  bool has_depth() const { return operator_ != Operator::over && !forgets_depth_; }
+  Colour background() const { return background_; }
   std::size_t bytes_per_pixel() const { return sizeof(Colour) + (has_depth() ? sizeof(float) : 0); }
   // Sets the bits of covered pixels of a group and returns how many. REQUIRES: mask is zero.
   std::uint64_t find_covered(std::size_t begin, std::size_t end, GroupMask& mask) const;
@@ -82,6 +88,8 @@ class ImageLayer : public Layer {
 
   image::BasicImage<Colour> image_;
   Operator operator_;
+  Colour background_{};
+  bool forgets_depth_ = false;
 };
 
 extern template class ImageLayer<image::Rgba8>;

@@ -1,9 +1,10 @@
 // One composition for all tiles: their pixels, tile after tile, are one image to the scheme
 // (composite::JoinedLayer), so that ranks with much to do in one tile share the work in others.
 //
-// Where a tile's depth is not asked for, who owns its pixels puts the background there, and only
-// colours travel to the rank that shows it, as the difference (exclusive or) to the background:
-// pixels of it are {} then, and do not travel.
+// Where the nearest shows, what is empty has the colour of the background from the moment that it
+// is in an image of ours, and does not travel. Where layers are blended, who owns their pixels
+// blends them over the background, and they travel to the rank that shows them as the difference
+// (exclusive or) to it: pixels of the background are {} then, and do not travel.
 #include "icet/compose_frame.h"
 
 #include <algorithm>
@@ -17,7 +18,6 @@
 #include "comm/agree_on_failure.h"
 #include "comm/forwarding.h"
 #include "composite/borrowed.h"
-#include "composite/codec.h"
 #include "composite/image_layer.h"
 #include "composite/joined.h"
 #include "composite/scheme.h"
@@ -96,20 +96,18 @@ class FrameComposition {
       : context_(context),
         settings_(context.settings),
         ranks_(*context.ranks, context.frame.timings.bytes_sent),
-        codec_(*composite::find_codec("active")),
         how_(settings_.blends() ? Operator::over : Operator::nearest),
         keeps_depth_(settings_.has_depth() && !settings_.blends() &&
                      !(settings_.has_colour() && settings_.is_enabled(ICET_COMPOSITE_ONE_BUFFER))),
         strategy_(*find_strategy(strategies(), settings_.strategy)),
         background_(!settings_.blends() || context.frame.corrects_background ||
                             strategy_.always_corrects
-                        ? context.frame.true_background
-                        : glm::vec4(0)) {
+                        ? as(context.frame.true_background, Colour{})
+                        : Colour{}) {
     std::vector<composite::JoinedLayer::Part> parts;
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       const auto pixels = static_cast<std::uint64_t>(settings_.tiles[i].place.area());
-      parts.push_back(
-          {pixels, tiles[i] ? composite::make_borrowed(new_image(i), *tiles[i], how_) : nullptr});
+      parts.push_back({pixels, tiles[i] ? make_layer(i, *tiles[i]) : nullptr});
     }
     auto joined = std::make_unique<composite::JoinedLayer>(
         std::move(parts), static_cast<int>(how_),
@@ -136,40 +134,13 @@ class FrameComposition {
 
   void finish() {
     const Stopwatch watch(context_.frame.timings.collect);
-    for_each_tile(
-        [](composite::Layer& tile, PixelRange pixels) { composite::settle(tile, pixels); });
     const bool collects = settings_.tiles.size() != 1 || settings_.is_enabled(ICET_COLLECT_IMAGES);
-    if (!collects) return keep_own();
-    if (!keeps_depth_) {
-      // Tiles that are missing stay so: their pixels are the background, and do not travel.
-      for_each_tile([&](composite::Layer& tile, PixelRange pixels) {
-        auto& image = image_of(tile);
-        put_background(image, pixels, background_, settings_.blends());
-        exclusive_or(image, pixels, background_);
-      });
-      how_ = Operator::over;
-      for (std::size_t i = 0; i < tiles().parts(); ++i) {
-        if (composite::Layer* const layer = tiles().layer(i)) {
-          dynamic_cast<composite::ImageLayer<Colour>&>(*layer).forget_depth();
-        }
-      }
-    }
-    std::vector<composite::Destination> destinations;
-    for (std::size_t i = 0; i < settings_.tiles.size(); ++i) {
-      destinations.push_back({tiles().range_of(i), settings_.tiles[i].display});
-    }
-    part_ = composite::gather(ranks_, std::move(part_), destinations);
-    const int shown = tile_of(settings_, ranks_.rank());
-    if (shown >= 0) {
-      const auto tile = static_cast<std::size_t>(shown);
-      auto& image = image_of(tiles().existing(tile));
-      const PixelRange all{0, image.pixels()};
-      if (keeps_depth_) {
-        put_background(image, all, background_, false);
-      } else {
-        exclusive_or(image, all, background_);
-      }
-      show(tile, all);
+    if (collects) {
+      collect();
+    } else if (!part_.ranges.empty()) {
+      const PixelRange range{part_.ranges.front().begin, part_.ranges.back().end};
+      if (settings_.blends()) put_background(tiles().existing(0), range);
+      show(0, range);
     }
     give_back_images();
   }
@@ -193,10 +164,19 @@ class FrameComposition {
     return context_.pool.take(place.width(), place.height(), Colour{});
   }
 
+  std::unique_ptr<composite::Layer> make_layer(std::size_t tile,
+                                               composite::BorrowedPixels<Colour> pixels) {
+    if (!settings_.blends()) pixels.background = background_;
+    return composite::make_borrowed(new_image(tile), pixels, how_);
+  }
+
   std::unique_ptr<composite::Layer> make_empty(std::size_t tile) {
-    auto image = new_image(tile);
-    image::clear(image);
-    return codec_.make(std::move(image), how_);
+    std::unique_ptr<composite::Layer> layer = make_layer(tile, {});
+    if (collects_colours_) forget_depth(*layer);
+    return layer;
+  }
+  static void forget_depth(composite::Layer& tile) {
+    dynamic_cast<composite::ImageLayer<Colour>&>(tile).forget_depth();
   }
 
   // Calls f(layer, pixels) for the pixels that this rank has composited, where there is a tile.
@@ -209,23 +189,59 @@ class FrameComposition {
     }
   }
 
-  // The pixels that this rank has composited of the one tile, if any.
-  void keep_own() {
-    if (!part_.ranges.empty()) {
-      const PixelRange range{part_.ranges.front().begin, part_.ranges.back().end};
-      put_background(image_of(tiles().existing(0)), range, background_, settings_.blends());
-      show(0, range);
-    }
-    give_back_images();
+  // Of pixels that were blended.
+  void put_background(composite::Layer& tile, PixelRange pixels) {
+    composite::settle(tile, pixels);
+    blend_over(image_of(tile), pixels, background_);
   }
 
+  // Sends what this rank has composited to who shows it.
+  void collect() {
+    if (settings_.blends()) {
+      for_each_tile([&](composite::Layer& tile, PixelRange pixels) {
+        put_background(tile, pixels);
+        exclusive_or(image_of(tile), pixels, background_);
+      });
+    }
+    if (!keeps_depth_) {
+      collects_colours_ = true;
+      for (std::size_t i = 0; i < tiles().parts(); ++i)
+        if (composite::Layer* const layer = tiles().layer(i)) forget_depth(*layer);
+    }
+    std::vector<composite::Destination> destinations;
+    for (std::size_t i = 0; i < settings_.tiles.size(); ++i) {
+      destinations.push_back({tiles().range_of(i), settings_.tiles[i].display});
+    }
+    const int shown = tile_of(settings_, ranks_.rank());
+    if (shown >= 0) {  // while others send theirs
+      for_each_tile([&](composite::Layer& tile, PixelRange pixels) {
+        if (&tile == tiles().layer(static_cast<std::size_t>(shown)))
+          composite::settle(tile, pixels);
+      });
+    }
+    part_ = composite::gather(ranks_, std::move(part_), destinations);
+    if (shown < 0) return;
+    const auto tile = static_cast<std::size_t>(shown);
+    const PixelRange all{0, tiles().range_of(tile).size()};
+    if (settings_.blends()) {
+      composite::Layer& layer = tiles().existing(tile);
+      composite::settle(layer, all);
+      exclusive_or(image_of(layer), all, background_);
+    }
+    show(tile, all);
+  }
+
+  // Pixels that are final.
   void show(std::size_t tile, PixelRange valid) {
     Frame& frame = context_.frame;
     frame.valid_tile = static_cast<int>(tile);
     frame.valid_offset = static_cast<int>(valid.begin);
     frame.valid_pixels = static_cast<int>(valid.size());
     Image& result = context_.result;
-    image::BasicImage<Colour>& image = image_of(tiles().existing(tile));
+    composite::Layer& layer = tiles().existing(tile);
+    composite::settle(layer, valid);
+    image::BasicImage<Colour>& image = image_of(layer);
+    if (keeps_depth_) set_empty_depths(image.depth.span().subspan(valid.begin, valid.size()));
     result.width = image.width;
     result.height = image.height;
     result.colour_format = settings_.colour_format;
@@ -254,11 +270,11 @@ class FrameComposition {
   Context& context_;
   const Settings& settings_;
   CountingCommunicator ranks_;
-  const composite::Codec& codec_;
-  Operator how_;      // of layers that are made from now on
-  bool keeps_depth_;  // the program gets depths
+  const Operator how_;
+  const bool keeps_depth_;         // the program gets depths
+  bool collects_colours_ = false;  // and nothing else from now on
   const Strategy& strategy_;
-  glm::vec4 background_;  // behind all
+  const Colour background_;  // behind all
   OwnedPixels part_;
 };
 

@@ -11,14 +11,6 @@ namespace {
 using image::Rgba8;
 using image::RgbaF;
 
-image::RgbaF as(const glm::vec4& colour, RgbaF /*type*/) {
-  return {colour.r, colour.g, colour.b, colour.a};
-}
-Rgba8 as(const glm::vec4& colour, Rgba8 /*type*/) { return as_bytes(colour); }
-
-std::uint32_t* words(Rgba8* colour) { return reinterpret_cast<std::uint32_t*>(colour); }
-RgbaF* words(RgbaF* colour) { return colour; }
-
 // value / 255, rounded; exact for products of two bytes.
 unsigned divided_by_255(unsigned value) {
   value += 128;
@@ -49,25 +41,6 @@ void blend_over(RgbaF* pixels, std::size_t size, RgbaF behind) {
   }
 }
 
-void fill_empty(std::uint32_t* colour, float* depth, std::size_t size, std::uint32_t background) {
-  for (std::size_t i = 0; i < size; ++i) {
-    const bool empty = depth[i] == image::kEmptyDepth;
-    colour[i] = empty ? background : colour[i];
-    depth[i] = empty ? 1 : depth[i];
-  }
-}
-
-void fill_empty(RgbaF* colour, float* depth, std::size_t size, RgbaF background) {
-  for (std::size_t i = 0; i < size; ++i) {
-    const bool empty = depth[i] == image::kEmptyDepth;
-    colour[i] = empty ? background : colour[i];
-    depth[i] = empty ? 1 : depth[i];
-  }
-}
-
-std::uint32_t as_word(Rgba8 colour) { return word_of(colour); }
-RgbaF as_word(RgbaF colour) { return colour; }
-
 }  // namespace
 
 Rgba8 as_bytes(const glm::vec4& colour) {
@@ -75,35 +48,32 @@ Rgba8 as_bytes(const glm::vec4& colour) {
 }
 
 template <class Colour>
-void put_background(image::BasicImage<Colour>& image, composite::PixelRange range,
-                    const glm::vec4& background, bool blends) {
-  const Colour behind = as(background, Colour{});
-  Colour* const colour = image.colour.data() + range.begin;
-  if (blends) {
-    if (!(behind == Colour{})) blend_over(colour, range.size(), behind);
-  } else {
-    fill_empty(words(colour), image.depth.data() + range.begin, range.size(), as_word(behind));
-  }
+void blend_over(image::BasicImage<Colour>& image, composite::PixelRange range, Colour background) {
+  if (background == Colour{}) return;
+  blend_over(image.colour.data() + range.begin, range.size(), background);
+}
+
+void set_empty_depths(std::span<float> depths) {
+  for (float& depth : depths) depth = depth == image::kEmptyDepth ? 1 : depth;
 }
 
 template <class Colour>
 void exclusive_or(image::BasicImage<Colour>& image, composite::PixelRange range,
-                  const glm::vec4& background) {
+                  Colour background) {
   constexpr std::size_t kWords = sizeof(Colour) / sizeof(std::uint32_t);
-  const Colour behind = as(background, Colour{});
-  if (behind == Colour{}) return;
-  const auto bits = std::bit_cast<std::array<std::uint32_t, kWords>>(behind);
+  if (background == Colour{}) return;
+  const auto bits = std::bit_cast<std::array<std::uint32_t, kWords>>(background);
   auto* const words = reinterpret_cast<std::uint32_t*>(image.colour.data());
   for (std::size_t i = range.begin; i < range.end; ++i) {
     for (std::size_t k = 0; k < kWords; ++k) words[i * kWords + k] ^= bits[k];
   }
 }
 
-template void put_background(image::Image8&, composite::PixelRange, const glm::vec4&, bool);
-template void put_background(image::ImageF&, composite::PixelRange, const glm::vec4&, bool);
+template void blend_over(image::Image8&, composite::PixelRange, Rgba8);
+template void blend_over(image::ImageF&, composite::PixelRange, RgbaF);
 
-template void exclusive_or(image::Image8&, composite::PixelRange, const glm::vec4&);
-template void exclusive_or(image::ImageF&, composite::PixelRange, const glm::vec4&);
+template void exclusive_or(image::Image8&, composite::PixelRange, Rgba8);
+template void exclusive_or(image::ImageF&, composite::PixelRange, RgbaF);
 
 void add_alpha(const float* rgb, std::size_t pixels, RgbaF* to) {
   for (std::size_t i = 0; i < pixels; ++i, rgb += 3) to[i] = {rgb[0], rgb[1], rgb[2], 1};

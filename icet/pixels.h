@@ -1,5 +1,5 @@
-// Pixels of finished images become those of the interface: empty ones have image::kEmptyDepth or
-// the colour {} in layers, and in the interface the background and a depth of 1.
+// Pixels of finished images become those of the interface, which have the background and a depth
+// of 1 where nothing is seen.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "composite/layer.h"
 #include "image/image.h"
@@ -18,26 +19,31 @@ inline std::uint8_t byte_of(float value) {
   return static_cast<std::uint8_t>(255 * std::min(std::max(0.0F, value), 1.0F));
 }
 image::Rgba8 as_bytes(const glm::vec4& colour);
+// The colour as one of the type of the second argument.
+inline image::Rgba8 as(const glm::vec4& colour, image::Rgba8 /*type*/) { return as_bytes(colour); }
+inline image::RgbaF as(const glm::vec4& colour, image::RgbaF /*type*/) {
+  return {colour.r, colour.g, colour.b, colour.a};
+}
 inline std::uint32_t word_of(image::Rgba8 colour) { return std::bit_cast<std::uint32_t>(colour); }
 
-// Pixels of a finished image as the interface has them: empty ones get the background
-// and the depth 1; where layers were blended, all are blended over the background, which is
+// Pixels of an image whose layers were blended are blended over the background, which is
 // premultiplied as they are.
 template <class Colour>
-void put_background(image::BasicImage<Colour>& image, composite::PixelRange range,
-                    const glm::vec4& background, bool blends);
+void blend_over(image::BasicImage<Colour>& image, composite::PixelRange range, Colour background);
+
+// image::kEmptyDepth becomes 1.
+void set_empty_depths(std::span<float> depths);
 
 // Changes the bits of pixels in which the background has ones, so that pixels of the
 // background become {}, and back.
 template <class Colour>
-void exclusive_or(image::BasicImage<Colour>& image, composite::PixelRange range,
-                  const glm::vec4& background);
+void exclusive_or(image::BasicImage<Colour>& image, composite::PixelRange range, Colour background);
 
-extern template void put_background(image::Image8&, composite::PixelRange, const glm::vec4&, bool);
-extern template void put_background(image::ImageF&, composite::PixelRange, const glm::vec4&, bool);
+extern template void blend_over(image::Image8&, composite::PixelRange, image::Rgba8);
+extern template void blend_over(image::ImageF&, composite::PixelRange, image::RgbaF);
 
-extern template void exclusive_or(image::Image8&, composite::PixelRange, const glm::vec4&);
-extern template void exclusive_or(image::ImageF&, composite::PixelRange, const glm::vec4&);
+extern template void exclusive_or(image::Image8&, composite::PixelRange, image::Rgba8);
+extern template void exclusive_or(image::ImageF&, composite::PixelRange, image::RgbaF);
 
 // Colours of three floats get an alpha of 1, and lose it.
 void add_alpha(const float* rgb, std::size_t pixels, image::RgbaF* to);

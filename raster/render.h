@@ -90,7 +90,7 @@ struct RenderOptions {
   std::string strategy = "sort-last";
   Blend blend = Blend::by_owner;
   std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
-  std::string codec = "dense";         // of composite::codecs(); sort-last
+  std::string codec = "active";        // of composite::codecs(); sort-last
   std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first and -middle
   CostSource costs = CostSource::model;
   int regions_per_rank = 1;  // more than one: the costliest go first to the least loaded rank

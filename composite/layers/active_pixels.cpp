@@ -348,8 +348,9 @@ void expand(const std::uint32_t* values, std::size_t readable, const GroupMask& 
 }
 
 void expand(const image::Rgba8* values, std::size_t readable, const GroupMask& mask,
-            std::span<image::Rgba8> to) {
-  expand(reinterpret_cast<const std::uint32_t*>(values), readable, mask, 0,
+            image::Rgba8 nothing, std::span<image::Rgba8> to) {
+  expand(reinterpret_cast<const std::uint32_t*>(values), readable, mask,
+         std::bit_cast<std::uint32_t>(nothing),
          {reinterpret_cast<std::uint32_t*>(to.data()), to.size()});
 }
 
@@ -360,8 +361,8 @@ void expand(const float* values, std::size_t readable, const GroupMask& mask, st
 }
 
 void expand(const image::RgbaF* values, std::size_t /*readable*/, const GroupMask& mask,
-            std::span<image::RgbaF> to) {
-  std::fill(to.begin(), to.end(), image::RgbaF{});
+            image::RgbaF nothing, std::span<image::RgbaF> to) {
+  std::fill(to.begin(), to.end(), nothing);
   for (std::size_t i = 0; i * 64 < to.size(); ++i) {
     for (std::uint64_t bits = mask[i]; bits != 0; bits &= bits - 1) {
       to[i * 64 + static_cast<std::size_t>(std::countr_zero(bits))] = *values++;
@@ -435,7 +436,8 @@ void blend(image::Rgba8* colour, std::size_t size, const GroupMask& mask,
     if (covered < count) {
       GroupMask some{};
       std::copy(mask.begin() + first, mask.begin() + i, some.begin());
-      expand(other.colour + next, other.readable - next, some, std::span(expanded.data(), count));
+      expand(other.colour + next, other.readable - next, some, {},
+             std::span(expanded.data(), count));
       layer = {expanded.data(), count};
     }
     const std::span target(colour + first * 64, count);

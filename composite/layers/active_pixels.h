@@ -42,12 +42,12 @@ void compress(const image::Rgba8* values, const GroupMask& mask, std::span<image
 void compress(const float* values, const GroupMask& mask, std::span<float> to);
 void compress(const image::RgbaF* values, const GroupMask& mask, std::span<image::RgbaF> to);
 
-// The inverse: pixels of a group that are not covered get {}, and kEmptyDepth. So many values may
-// be read.
+// The inverse: pixels of a group that are not covered get `nothing`, and kEmptyDepth. So many
+// values may be read.
 void expand(const image::Rgba8* values, std::size_t readable, const GroupMask& mask,
-            std::span<image::Rgba8> to);
+            image::Rgba8 nothing, std::span<image::Rgba8> to);
 void expand(const image::RgbaF* values, std::size_t readable, const GroupMask& mask,
-            std::span<image::RgbaF> to);
+            image::RgbaF nothing, std::span<image::RgbaF> to);
 void expand(const float* values, std::size_t readable, const GroupMask& mask, std::span<float> to);
 
 // Unpacks what compress gave, of two planes.

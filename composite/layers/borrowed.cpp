@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,20 @@ struct SomePixels {
   image::Plane<float> own_depth;
 };
 
+// As something that compilers select by vectors.
+const std::uint32_t* words(const image::Rgba8* colour) {
+  return reinterpret_cast<const std::uint32_t*>(colour);
+}
+std::uint32_t* words(image::Rgba8* colour) { return reinterpret_cast<std::uint32_t*>(colour); }
+const image::RgbaF* words(const image::RgbaF* colour) { return colour; }
+image::RgbaF* words(image::RgbaF* colour) { return colour; }
+
+template <class Word>
+void take_nearer(const Word* colour, const float* depth, std::size_t size, float empty_depth,
+                 Word background, Word* to) {
+  for (std::size_t k = 0; k < size; ++k) to[k] = depth[k] < empty_depth ? colour[k] : background;
+}
+
 template <class Colour>
 class BorrowedLayer final : public ActiveLayer<Colour> {
  public:
@@ -44,19 +59,17 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
         by_depth_(how == Operator::nearest),
         is_settled_((this->pixels() + kGroupPixels - 1) / kGroupPixels) {
     assert(how != Operator::over_with_depth);
+    this->set_background(pixels.background);
   }
 
   comm::Buffer encode(PixelRange range) override {
-    const bool forgets_depth = by_depth_ && !this->has_depth();
-    if (forgets_depth) settle_range(range);
-    if (forgets_depth || settled(blocks_of(range)) == Settled::all)
-      return ActiveLayer<Colour>::encode(range);
+    if (settled(blocks_of(range)) == Settled::all) return ActiveLayer<Colour>::encode(range);
     const Coverage coverage(range.size(),
                             [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
                               return find({range.begin + begin, range.begin + end}, mask);
                             });
     return internal::encode_active<Colour>(
-        coverage, by_depth_, [&](std::uint64_t begin, std::uint64_t end) {
+        coverage, this->has_depth(), [&](std::uint64_t begin, std::uint64_t end) {
           return view({range.begin + begin, range.begin + end}, /*colours=*/true);
         });
   }
@@ -86,7 +99,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
       if (blocks.begin + 1 < blocks.end) settle_blocks({blocks.end - 1, blocks.end});
       for (std::uint64_t i = blocks.begin; i < blocks.end; ++i) is_settled_[i] = 1;
     } else {
-      settle_blocks(blocks);
+      settle_covered(range, Coverage(range.size(), {pixels.data(), pixels.size()}));
     }
     return ActiveLayer<Colour>::apply(range, pixels, action);
   }
@@ -162,18 +175,33 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
 
   // Borrowed pixels become those of a layer.
   void take(PixelRange pixels, Colour* colour, float* depth) const {
-    const SomePixels<Colour> some = borrowed_view(pixels, /*colours=*/true);
-    if (!by_depth_) {
-      for (std::size_t k = 0; k < pixels.size(); ++k) {
-        colour[k] = some.colour[k].a != 0 ? some.colour[k] : Colour{};
+    for_each_run(pixels, [&](std::size_t at, std::size_t size, std::optional<std::ptrdiff_t> from) {
+      const Colour* const colours =
+          from && from_.colour != nullptr ? from_.colour + *from : nullptr;
+      if (!by_depth_) {
+        for (std::size_t k = 0; k < size; ++k)
+          colour[at + k] = colours != nullptr && colours[k].a != 0 ? colours[k] : Colour{};
+        return;
       }
-      return;
-    }
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      const bool covered = some.depth[k] < from_.empty_depth;
-      colour[k] = covered ? some.colour[k] : Colour{};
-      depth[k] = covered ? some.depth[k] : image::kEmptyDepth;
-    }
+      if (!from) {
+        std::fill_n(colour + at, size, from_.background);
+      } else if (colours == nullptr) {
+        for (std::size_t k = 0; k < size; ++k)
+          colour[at + k] = from_.depth[*from + static_cast<std::ptrdiff_t>(k)] < from_.empty_depth
+                               ? Colour{}
+                               : from_.background;
+      } else {
+        take_nearer(words(colours), from_.depth + *from, size, from_.empty_depth,
+                    *words(&from_.background), words(colour + at));
+      }
+      if (!this->has_depth()) return;
+      if (!from) {
+        std::fill_n(depth + at, size, image::kEmptyDepth);
+      } else {
+        take_nearer(from_.depth + *from, from_.depth + *from, size, from_.empty_depth,
+                    image::kEmptyDepth, depth + at);
+      }
+    });
   }
 
   SomePixels<Colour> borrowed_view(PixelRange pixels, bool colours) const {
@@ -210,26 +238,62 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
   template <class T>
   image::Plane<T> copy(const T* plane, T outside, PixelRange pixels) const {
     image::Plane<T> result(pixels.size());
-    std::fill_n(result.data(), result.size(), outside);
-    if (plane == nullptr || from_.window.empty()) return result;
-    const auto width = static_cast<std::ptrdiff_t>(this->image().width);
-    const auto b = static_cast<std::ptrdiff_t>(pixels.begin);
-    const auto e = static_cast<std::ptrdiff_t>(pixels.end);
-    const geometry::Rect& window = from_.window;
-    for (std::ptrdiff_t y = std::max<std::ptrdiff_t>(b / width, window.y0);
-         y < window.y1 && y * width < e; ++y) {
-      const std::ptrdiff_t from = std::max(b, y * width + window.x0);
-      const std::ptrdiff_t to = std::min(e, y * width + window.x1);
-      if (from >= to) continue;
-      const std::ptrdiff_t at = from_.origin + y * from_.stride + (from - y * width);
-      std::copy_n(plane + at, to - from, result.data() + (from - b));
-    }
+    for_each_run(pixels, [&](std::size_t at, std::size_t size, std::optional<std::ptrdiff_t> from) {
+      if (from && plane != nullptr) {
+        std::copy_n(plane + *from, size, result.data() + at);
+      } else {
+        std::fill_n(result.data() + at, size, outside);
+      }
+    });
     return result;
   }
 
+  // Calls f(first, size, from) for runs of pixels, counted from the first of the range, that are
+  // neighbours at `from` in the planes, or outside of the window.
+  template <class F>
+  void for_each_run(PixelRange pixels, F&& f) const {
+    const auto width = static_cast<std::ptrdiff_t>(this->image().width);
+    const auto end = static_cast<std::ptrdiff_t>(pixels.end);
+    const geometry::Rect& window = from_.window;
+    auto at = static_cast<std::ptrdiff_t>(pixels.begin);
+    const auto run = [&](std::ptrdiff_t to, std::optional<std::ptrdiff_t> from) {
+      if (to > at) {
+        f(static_cast<std::size_t>(at) - pixels.begin, static_cast<std::size_t>(to - at), from);
+        at = to;
+      }
+    };
+    while (at < end) {
+      const std::ptrdiff_t y = at / width, row = y * width;
+      if (window.empty() || y >= window.y1) {
+        run(end, {});
+      } else if (y < window.y0) {
+        run(std::min(end, window.y0 * width), {});
+      } else {
+        run(std::min(end, row + window.x0), {});
+        run(std::min(end, row + window.x1), from_.origin + y * from_.stride + (at - row));
+        run(std::min(end, row + width), {});
+      }
+    }
+  }
+
+  // The blocks of groups of a range in which anything is covered.
+  void settle_covered(PixelRange range, const Coverage& coverage) {
+    std::vector<char> wanted(is_settled_.size());
+    for (std::size_t i = 0; i < coverage.groups(); ++i) {
+      const Coverage::Group group = coverage.group(i);
+      if (group.covered == 0) continue;
+      const PixelRange blocks = blocks_of({range.begin + group.begin, range.begin + group.end});
+      for (std::uint64_t k = blocks.begin; k < blocks.end; ++k) wanted[k] = 1;
+    }
+    settle_if(blocks_of(range), [&](std::size_t i) { return wanted[i] != 0; });
+  }
   void settle_blocks(PixelRange blocks) {
+    settle_if(blocks, [](std::size_t /*block*/) { return true; });
+  }
+  template <class F>
+  void settle_if(PixelRange blocks, F&& is_wanted) {
     parallel::parallel_for(blocks.begin, blocks.end, internal::kGroupsGrain, [&](std::size_t i) {
-      if (is_settled_[i] != 0) return;
+      if (is_settled_[i] != 0 || !is_wanted(i)) return;
       const PixelRange block = block_pixels(i);
       take(block, this->image().colour.data() + block.begin,
            this->image().depth.data() + block.begin);

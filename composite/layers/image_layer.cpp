@@ -61,7 +61,7 @@ bool ImageLayer<Colour>::empty() const {
 template <class Colour>
 std::uint64_t ImageLayer<Colour>::find_covered(std::size_t begin, std::size_t end,
                                                GroupMask& mask) const {
-  return has_depth()
+  return operator_ != Operator::over
              ? internal::find_covered(image_.depth.span().subspan(begin, end - begin), mask)
              : internal::find_coloured(image_.colour.span().subspan(begin, end - begin), mask);
 }
@@ -73,7 +73,7 @@ void ImageLayer<Colour>::prune_pixel(std::size_t pixel, const Pixels& others, st
                                      : !hides(others.colour[k])) {
     return;
   }
-  image_.colour[pixel] = {};
+  image_.colour[pixel] = background_;
   if (has_depth()) image_.depth[pixel] = image::kEmptyDepth;
 }
 
@@ -106,7 +106,7 @@ void ImageLayer<Colour>::apply_to_covered(Action action, std::size_t first, std:
   Colour* const colour = image_.colour.data() + first;
   float* const depth = image_.depth.data() + first;
   if (action == Action::replace) {
-    internal::expand(covered.colour, covered.readable, mask, std::span(colour, size));
+    internal::expand(covered.colour, covered.readable, mask, background_, std::span(colour, size));
     if (has_depth()) {
       internal::expand(covered.depth, covered.readable, mask, std::span(depth, size));
     }
@@ -128,7 +128,7 @@ void ImageLayer<Colour>::apply_to_covered(Action action, std::size_t first, std:
 template <class Colour>
 void ImageLayer<Colour>::apply_to_none(Action action, std::size_t first, std::size_t size) {
   if (action != Action::replace) return;
-  std::fill_n(image_.colour.data() + first, size, Colour{});
+  std::fill_n(image_.colour.data() + first, size, background_);
   if (has_depth()) std::fill_n(image_.depth.data() + first, size, image::kEmptyDepth);
 }
 

@@ -74,6 +74,7 @@ BasicImage<Colour> copy_of(const Rendered<Colour>& from, Operator how) {
   BasicImage<Colour> image(from.width, from.height);
   clear(image);
   const BorrowedPixels<Colour>& pixels = from.pixels;
+  std::fill_n(image.colour.data(), image.pixels(), pixels.background);
   for (int y = 0; y < from.height; ++y) {
     for (int x = 0; x < from.width; ++x) {
       const auto at = static_cast<std::size_t>(pixels.origin + y * pixels.stride + x);
@@ -94,17 +95,25 @@ bool same_bytes(const comm::Buffer& a, const comm::Buffer& b) {
 }
 
 template <class Colour>
-void expect_same_messages(Operator how) {
+ImageLayer<Colour>& image_layer(Layer& layer) {
+  return dynamic_cast<ImageLayer<Colour>&>(layer);
+}
+
+template <class Colour>
+void expect_same_messages(Operator how, Colour background = {}) {
   std::mt19937 random(7);
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const int width = 1 + static_cast<int>(random() % 300);
     const int height = 1 + static_cast<int>(random() % 120);
-    const auto front = render<Colour>(width, height, seed, seed % 7 == 0 && how != Operator::over);
-    const auto back = render<Colour>(width, height, seed + 1000);
+    auto front = render<Colour>(width, height, seed, seed % 7 == 0 && how != Operator::over);
+    auto back = render<Colour>(width, height, seed + 1000);
+    front.pixels.background = back.pixels.background = background;
     const Codec& active = *find_codec("active");
     const auto borrowed = make_borrowed(BasicImage<Colour>(width, height), front.pixels, how);
     const auto copied = active.make(copy_of(front, how), how);
     const auto other = active.make(copy_of(back, how), how);
+    image_layer<Colour>(*copied).set_background(background);
+    image_layer<Colour>(*other).set_background(background);
     EXPECT_EQ(borrowed->empty(), copied->empty()) << "seed " << seed;
     for (int step = 0; step < 12; ++step) {
       const std::uint64_t pixels = borrowed->pixels();
@@ -134,14 +143,25 @@ void expect_same_messages(Operator how) {
           settle(*copied, range);
       }
     }
-    const PixelRange all{0, borrowed->pixels()};
+    const PixelRange all{0, borrowed->pixels()}, some{all.end / 5, all.end / 2};
+    const bool colours_alone = how == Operator::nearest && seed % 2 == 0;
+    if (colours_alone) {
+      for (Layer* const layer : {borrowed.get(), copied.get(), other.get()})
+        image_layer<Colour>(*layer).forget_depth();
+      EXPECT_TRUE(same_bytes(borrowed->encode(all), copied->encode(all))) << "seed " << seed;
+      const comm::Buffer message = other->encode(some);
+      EXPECT_LE(message.size(), 8 + some.size() * (sizeof(Colour) + 1));
+      borrowed->replace(some, message);
+      std::copy_n(image_layer<Colour>(*other).image().colour.data() + some.begin, some.size(),
+                  image_layer<Colour>(*copied).image().colour.data() + some.begin);
+    }
     settle(*borrowed, all);
-    const auto& image = dynamic_cast<ImageLayer<Colour>&>(*borrowed).image();
-    const auto& expected = dynamic_cast<ImageLayer<Colour>&>(*copied).image();
+    const auto& image = image_layer<Colour>(*borrowed).image();
+    const auto& expected = image_layer<Colour>(*copied).image();
     EXPECT_TRUE(std::equal(image.colour.data(), image.colour.data() + image.pixels(),
                            expected.colour.data()))
         << "seed " << seed;
-    if (how == Operator::over) continue;
+    if (how == Operator::over || colours_alone) continue;
     EXPECT_TRUE(
         std::equal(image.depth.data(), image.depth.data() + image.pixels(), expected.depth.data()))
         << "seed " << seed;
@@ -155,6 +175,11 @@ TEST(Borrowed, IsAsACopyIs) {
   expect_same_messages<Rgba8>(Operator::over);
   expect_same_messages<RgbaF>(Operator::nearest);
   expect_same_messages<RgbaF>(Operator::over);
+}
+
+TEST(Borrowed, LeavesTheBackgroundWhereNothingIs) {
+  expect_same_messages<Rgba8>(Operator::nearest, {1, 2, 3, 4});
+  expect_same_messages<RgbaF>(Operator::nearest, {0.5F, 1, 2, 0});
 }
 
 // All of small images, of which no row ends where a vector does.
