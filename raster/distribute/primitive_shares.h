@@ -14,35 +14,42 @@ namespace delray::raster {
 // the first all % holders ranks have one more. REQUIRES: 0 <= k <= holders; holders >= 1.
 std::uint64_t begin_of_equal_share(std::uint64_t all, int holders, int k);
 
-// Ranks have ascending intervals of primitives, of equal size in the first frame and then moved
-// towards equal work by what each rank did in the frames before. One per rank; rank 0's remembers
-// and decides.
+// Ranks have ascending intervals of primitives, of equal size in the first frame and then of equal
+// work, as far as the work of the last frame tells. One per rank; rank 0's remembers and decides.
 class PrimitiveShares {
  public:
   // This rank's interval [begin, end) of the next frame; those of all ranks cover all primitives
-  // once. Equal shares where any rank was not part of the last frame. Collective: 24 bytes to rank
-  // 0 and 8 for each rank back. O(ranks + 1024).
+  // once. Equal shares where any rank was not part of the last frame. Collective: some 16 KiB from
+  // all ranks together and 16 bytes from each to rank 0, 8 for each rank back. O(ranks).
   std::pair<std::uint64_t, std::uint64_t> next(comm::Communicator& communicator,
                                                std::uint64_t primitives);
 
-  // Remembers the work, in any unit, that this rank had with its interval. REQUIRES: finite, >= 0.
-  void measure(double work) { last_.work = work; }
+  // Remembers the work, in any unit, that this rank had with its interval: so much for each
+  // primitive, and `work_seen` for what is seen of them, spread evenly over the primitives `seen`,
+  // samples of it, repeated where more is seen of one. If there are none, it is spread evenly over
+  // the interval. O(samples).
+  //
+  // REQUIRES: finite, >= 0; samples ascend, and are of the interval.
+  void measure(double work_each, double work_seen, std::span<const std::uint64_t> seen);
 
  private:
+  // What a rank had in the last frame: the work with the primitives from the end of one segment, or
+  // `begin`, up to the end of the next.
+  struct Segment {
+    std::uint64_t end = 0;
+    double work = 0;
+  };
   struct Done {
     std::uint64_t begin = 0, end = 0;
-    double work = 0;
+    std::vector<Segment> segments;
   };
 
   bool remembers(std::span<const Done> done, std::uint64_t primitives) const;
-  void learn(std::span<const Done> done);
-  void cut();
+  void cut(std::span<const Done> done);
 
-  Done last_;  // this rank's last frame
-  // On rank 0: where intervals begin, and, after them, the number of primitives; the work that is
-  // expected of each bucket, an equal part of all primitives.
-  std::vector<std::uint64_t> cuts_;
-  std::vector<double> work_of_bucket_;
+  int ranks_ = 1;
+  Done last_;                        // this rank's last frame
+  std::vector<std::uint64_t> cuts_;  // on rank 0: where intervals begin, and the end
 };
 
 }  // namespace delray::raster

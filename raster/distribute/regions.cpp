@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -236,14 +237,48 @@ void RegionDrawing::find_seen(const TileJob& job, const VisibilityTile* tile, Ti
   for (const BlendedFragment& fragment : memory.blended) add(number_of(fragment.key));
 }
 
+void RegionDrawing::sample_seen() {
+  samples_seen_ = true;
+  scratch_.seen.clear();
+}
+
+namespace {
+
+// Every eighth pixel of every eighth row of a tile, in each such row others than in the one before.
+bool is_sample(int x, int y) { return y % 8 == 0 && (x + y / 8 * 3) % 8 == 0; }
+
+}  // namespace
+
+void RegionDrawing::sample_seen(const TileJob& job, const VisibilityTile* tile,
+                                std::span<const BlendedFragment> blended,
+                                std::vector<std::uint32_t>& numbers) const {
+  for (const BlendedFragment& fragment : blended) {
+    const auto pixel = static_cast<int>(fragment.pixel);
+    if (is_sample(pixel % kTileSize, pixel / kTileSize)) numbers.push_back(number_of(fragment.key));
+  }
+  if (tile == nullptr) return;
+  const geometry::Rect corner = task_.screen.tile(job.tile);
+  for (const geometry::Rect& rect : tiles_.rects_of(job)) {
+    for (int y = rect.y0 - corner.y0; y < rect.y1 - corner.y0; ++y) {
+      if (y % 8 != 0) continue;
+      for (int x = rect.x0 - corner.x0; x < rect.x1 - corner.x0; ++x) {
+        const std::uint32_t number = number_of(tile->key[y * kTileSize + x]);
+        if (is_sample(x, y) && number != kNothing) numbers.push_back(number);
+      }
+    }
+  }
+}
+
 void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
                                 RegionCounts& counts) {
   const Screen& screen = task_.screen;
   ProcessorSeconds rasterize_seconds, shade_seconds;
   std::atomic<std::uint64_t> fragments{0}, shaded{0};
   std::atomic<std::size_t> next{0};
+  std::mutex mutex;
   parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t worker) {
     StageClock<2> clock;
+    std::vector<std::uint32_t> seen;
     TileMemory& mine = *scratch_.tile_memory[worker];
     std::vector<std::uint32_t> draws;
     std::uint64_t shaded_here = 0, shown_here = 0;
@@ -268,6 +303,7 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
       if (tile != nullptr) drop_hidden(index, *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
                    scratch_.deferred.blended.of_tile(index), tile, mine.blended);
+      if (samples_seen_) sample_seen(jobs[k], tile, mine.blended, seen);
       clock.finish(0);
       TileView view(frame_->shading(), tile, shaded_pixels(index), mine);
       draws.clear();
@@ -284,6 +320,9 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
     fragments.fetch_add(shown_here, std::memory_order_relaxed);
     shaded.fetch_add(shaded_here, std::memory_order_relaxed);
     clock.add_to({&rasterize_seconds, &shade_seconds});
+    if (seen.empty()) return;
+    const std::lock_guard lock(mutex);
+    scratch_.seen.insert(scratch_.seen.end(), seen.begin(), seen.end());
   });
   counts.phases.rasterize += rasterize_seconds.seconds();
   counts.phases.shade += shade_seconds.seconds();

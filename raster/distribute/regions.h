@@ -29,6 +29,7 @@ struct Scratch {
   // By tile, of drawings whose colours are looked up as they are drawn; and how many these were.
   std::vector<std::unique_ptr<TileColours>> tile_colours;
   std::uint64_t coloured = 0;
+  std::vector<std::uint32_t> seen;  // numbers of the list, of a drawing that was asked for them
 };
 
 // Times of rendering, summed over threads, and counts of the work.
@@ -100,6 +101,9 @@ class RegionDrawing {
     return scratch_.tiles.farthest_of_blocks(task_.screen);
   }
   void hide_behind(std::vector<std::int32_t>&& codes) { hidden_behind_ = std::move(codes); }
+  // Puts into Scratch::seen, as tiles are finished, of one in 64 of their pixels the number of the
+  // triangle that is seen there, if any, and of those that are blended before it, in any order.
+  void sample_seen();
   // Columns and rows of tiles around all that is drawn by now, or waits for the end.
   geometry::Rect tiles_seen() const;
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
@@ -119,6 +123,9 @@ class RegionDrawing {
   void find_seen(const TileJob& job, const VisibilityTile* tile, TileMemory& memory,
                  std::vector<std::uint32_t>& draws) const;
   void drop_hidden(int tile, VisibilityTile& visibility) const;
+  void sample_seen(const TileJob& job, const VisibilityTile* tile,
+                   std::span<const BlendedFragment> blended,
+                   std::vector<std::uint32_t>& numbers) const;
   bool looks_up_colours() const { return into_tiles_.tile_drawn != nullptr; }
   ShadedPixels shaded_pixels(int tile) const;
   void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
@@ -132,6 +139,7 @@ class RegionDrawing {
   DrawIntoTiles into_tiles_;
   DrawCosts costs_;
   std::vector<std::int32_t> hidden_behind_;  // empty: nothing is known
+  bool samples_seen_ = false;
 };
 
 }  // namespace delray::raster

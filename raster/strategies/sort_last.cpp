@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
 #include <type_traits>
 
 #include "comm/agree_on_failure.h"
@@ -179,6 +180,24 @@ std::unique_ptr<composite::Layer> mask_of(const RankContext& rank,
                                               {&rank.communicator, *rank.options.count_only});
 }
 
+// The primitives of some numbers of the list, ascending: by counting, cluster by cluster.
+std::vector<std::uint64_t> primitives_seen(const DrawList& list,
+                                           std::span<const std::uint32_t> numbers) {
+  std::vector<std::uint32_t> next(list.clusters.size() + 1);
+  for (const std::uint32_t number : numbers) ++next[(number >> kClusterBits) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<std::uint64_t> seen(numbers.size());
+  for (const std::uint32_t number : numbers)
+    seen[next[number >> kClusterBits]++] = list.primitive_of(number);
+  std::size_t begin = 0;
+  for (const std::uint32_t end : next) {  // of clusters by now, but for the last
+    std::sort(seen.begin() + static_cast<std::ptrdiff_t>(begin),
+              seen.begin() + static_cast<std::ptrdiff_t>(end));
+    begin = end;
+  }
+  return seen;
+}
+
 // Triangles are drawn as soon as they are set up, so that none are kept and hidden clusters are
 // skipped: that belongs to the first step, large and blended triangles and shading to the second.
 template <class Colour>
@@ -198,6 +217,7 @@ class Steps final : public FrameSteps {
     }
     list_ = make_draw_list(pieces(), &rank_.prepared.clusters);
     drawing_.reset(new RegionDrawing(rank_.begin(list_, {&frame, 1})));
+    if (feeds_back()) drawing_->sample_seen();
     drawing_->draw_all();
   }
 
@@ -224,6 +244,7 @@ class Steps final : public FrameSteps {
                    ->make(is_part_ ? rank_.end_part<Colour>(*drawing_, seen_)
                                    : rank_.end_samples<Colour>(*drawing_));
     }
+    measure();
     drop_drawing();
   }
 
@@ -256,7 +277,11 @@ class Steps final : public FrameSteps {
            !shades_last() && !has_cells() && !counts_only();
   }
   // Instead of rasterize and compose. REQUIRES: has_tiles().
-  Picture rasterize_and_compose() { return picture_of(hand_over_tiles<Colour>(rank_, *drawing_)); }
+  Picture rasterize_and_compose() {
+    composite::OwnedPixels part = hand_over_tiles<Colour>(rank_, *drawing_);
+    measure();
+    return picture_of(std::move(part));
+  }
 
  private:
   const DrawList& list() const { return packed_ ? packed_->list() : list_; }
@@ -280,6 +305,30 @@ class Steps final : public FrameSteps {
            !rank_.prepared.transparent && !shades_last() && !has_cells();
   }
 
+  // Whether shares follow the work of the last frame. Frames in steps overlap, and none knows what
+  // the one before took; of a wall it was another display's; and parts stay where they are.
+  bool feeds_back() const {
+    return rank_.ranks() > 1 && !has_cells() && rank_.prepared.packed == nullptr &&
+           !rank_.in_steps && rank_.options.displays.empty() && !rank_.prepared.is_part;
+  }
+
+  // What the rank drew: counted, so that frames share out the same primitives in each run, or
+  // measured.
+  void measure() {
+    if (!feeds_back()) return;
+    constexpr double kPrimitivePrice = 0.3;  // of a pixel that is shaded
+    const auto primitives = static_cast<double>(rank_.counts.triangles.in);
+    const auto shaded = static_cast<double>(rank_.counts.shaded);
+    double unit = 1;
+    if (const double work = kPrimitivePrice * primitives + shaded;
+        rank_.options.costs == CostSource::measured && work > 0) {
+      const Phases& phases = rank_.counts.phases;
+      unit = (phases.transform + phases.bin + phases.rasterize + phases.shade) / work;
+    }
+    rank_.memory.primitive_shares.measure(unit * kPrimitivePrice, unit * shaded,
+                                          primitives_seen(list_, rank_.scratch.seen));
+  }
+
   std::vector<Piece> pieces() {
     if (has_cells()) {
       SceneCells& cells = rank_.memory.cells;
@@ -288,12 +337,9 @@ class Steps final : public FrameSteps {
       order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.viewpoint);
       return cells.pieces;
     }
-    // Frames in steps overlap, and none knows what the one before took; of a wall it was another
-    // display's; and parts stay where they are.
-    const bool same = rank_.in_steps || !rank_.options.displays.empty() || rank_.prepared.is_part;
-    const auto [begin, end] =
-        same ? rank_.own_primitives()
-             : rank_.memory.primitive_shares.next(rank_.communicator, rank_.prepared.primitives);
+    const auto [begin, end] = feeds_back() ? rank_.memory.primitive_shares.next(
+                                                 rank_.communicator, rank_.prepared.primitives)
+                                           : rank_.own_primitives();
     return pieces_of(rank_.prepared.scene, rank_.prepared.first_primitives, begin, end);
   }
 
@@ -331,18 +377,6 @@ class Steps final : public FrameSteps {
   std::vector<int> order_;
 };
 
-// What the rank drew: counted, so that frames share out the same primitives in each run, or
-// measured.
-double work_of(const RankContext& rank) {
-  constexpr double kPrimitivePrice = 0.3;  // of a pixel that is shaded
-  if (rank.options.costs == CostSource::model) {
-    return kPrimitivePrice * static_cast<double>(rank.counts.triangles.in) +
-           static_cast<double>(rank.counts.shaded);
-  }
-  const Phases& phases = rank.counts.phases;
-  return phases.transform + phases.bin + phases.rasterize + phases.shade;
-}
-
 template <class Colour>
 Picture render(RankContext& rank) {
   rank.communicator.mark(comm::Phase::rasterize, 0);
@@ -356,13 +390,8 @@ Picture render(RankContext& rank) {
   }
   steps.transform();
   steps.hide_behind_others();
-  if (steps.has_tiles()) {
-    Picture picture = steps.rasterize_and_compose();
-    rank.memory.primitive_shares.measure(work_of(rank));
-    return picture;
-  }
+  if (steps.has_tiles()) return steps.rasterize_and_compose();
   steps.rasterize();
-  rank.memory.primitive_shares.measure(work_of(rank));
   return steps.compose();
 }
 

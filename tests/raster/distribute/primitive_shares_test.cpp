@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -14,6 +15,20 @@ namespace delray::raster {
 namespace {
 
 using Intervals = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
+
+// Of primitives [begin, end), where i has the part work(i) of all work, evenly.
+std::vector<std::uint64_t> samples(std::uint64_t begin, std::uint64_t end,
+                                   const std::function<double(std::uint64_t)>& work) {
+  constexpr double kSamples = 4000;
+  std::vector<std::uint64_t> seen;
+  double all = 0, before = 0;
+  for (std::uint64_t i = begin; i < end; ++i) all += work(i);
+  for (std::uint64_t i = begin; i < end; before += work(i++)) {
+    for (auto k = std::ceil(before / all * kSamples); k < (before + work(i)) / all * kSamples; ++k)
+      seen.push_back(i);
+  }
+  return seen;
+}
 
 // The intervals of all ranks after so many frames, where primitive i is work(i). At the frame
 // `forgets` the last rank begins anew.
@@ -26,9 +41,10 @@ Intervals after(int frames, int ranks, std::uint64_t primitives,
     for (int frame = 0; frame < frames; ++frame) {
       if (frame == forgets && communicator.rank() == ranks - 1) shares.emplace();
       mine = shares->next(communicator, primitives);
+      const std::vector<std::uint64_t> seen = samples(mine.first, mine.second, work);
       double sum = 0;
       for (std::uint64_t i = mine.first; i < mine.second; ++i) sum += work(i);
-      shares->measure(sum);
+      shares->measure(0, sum, seen);
     }
   });
   return intervals;
@@ -60,7 +76,7 @@ TEST(PrimitiveShares, ComeToHaveEqualWork) {
   // All work but a little lies in a twentieth of the primitives, on one side of the middle.
   const auto work = [](std::uint64_t i) { return i >= 8000 && i < 9000 ? 100.0 : 0.1; };
   for (const int ranks : {2, 3, 5}) {
-    const Intervals intervals = after(40, ranks, kPrimitives, work);
+    const Intervals intervals = after(2, ranks, kPrimitives, work);
     expect_cover(intervals, kPrimitives);
     double most = 0, all = 0;
     for (const auto& [begin, end] : intervals) {
@@ -69,7 +85,7 @@ TEST(PrimitiveShares, ComeToHaveEqualWork) {
       most = std::max(most, sum);
       all += sum;
     }
-    EXPECT_LT(most * ranks, 1.15 * all) << ranks;
+    EXPECT_LT(most * ranks, 1.02 * all) << ranks;
   }
 }
 
@@ -84,10 +100,35 @@ TEST(PrimitiveShares, StayWhereWorkIsEqualOrNone) {
 TEST(PrimitiveShares, BeginAnewWhereARankWasElsewhere) {
   const auto work = [](std::uint64_t i) { return i < 100 ? 1.0 : 0.0; };
   const Intervals kept = after(6, 2, 1000, work);
-  EXPECT_LT(kept[0].second, 250U);
+  EXPECT_EQ(kept[0].second, 50U);
   const Intervals anew = after(6, 2, 1000, work, 5);
   expect_cover(anew, 1000);
   EXPECT_EQ(anew[0].second, 500U);
+}
+
+// Neighbours that are seen as much as all others together, and more.
+TEST(PrimitiveShares, AreCutBesidePrimitivesWithMuchWork) {
+  const auto work = [](std::uint64_t i) { return i == 700 ? 9000.0 : i == 701 ? 6000.0 : 1.0; };
+  const Intervals two = after(2, 2, 6000, work);
+  EXPECT_EQ(two[0].second, 701U);
+  const Intervals four = after(2, 4, 6000, work);
+  expect_cover(four, 6000);
+  EXPECT_EQ(four[1], (std::pair<std::uint64_t, std::uint64_t>{700, 701}));
+  EXPECT_EQ(four[2], (std::pair<std::uint64_t, std::uint64_t>{701, 702}));
+}
+
+// What is drawn counts where nothing is seen, too.
+TEST(PrimitiveShares, CountWhatIsDrawn) {
+  comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
+    PrimitiveShares shares;
+    std::pair<std::uint64_t, std::uint64_t> mine;
+    for (int frame = 0; frame < 2; ++frame) {
+      mine = shares.next(communicator, 1000);
+      const std::vector<std::uint64_t> seen(mine.first == 0 ? 10U : 0U, 0);
+      shares.measure(1, mine.first == 0 ? 500 : 0, seen);
+    }
+    EXPECT_EQ(mine.first, communicator.rank() == 0 ? 0U : 250U);
+  });
 }
 
 TEST(PrimitiveShares, CoverFewPrimitivesForManyRanks) {
