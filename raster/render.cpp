@@ -23,6 +23,7 @@
 #include "raster/distribute/rank_context.h"
 #include "raster/distribute/share_communicator.h"
 #include "raster/packed/packed_scene.h"
+#include "raster/pipeline/distances.h"
 #include "raster/pipeline/samples.h"
 #include "raster/shading/eye_dome.h"
 #include "raster/strategies.h"
@@ -122,25 +123,6 @@ Screen screen_of(const scenes::Camera& camera, const RenderOptions& options) {
   return screen;
 }
 
-// Makes distances along the view axis of depths (-near / distance); empty pixels stay.
-void to_distances(std::span<float> depths, const scenes::View& view) {
-  constexpr std::size_t kGrain = 1 << 16;  // pixels: some ten microseconds
-  parallel::parallel_blocks(0, depths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    constexpr std::size_t kRun = 64;
-    for (std::size_t first = begin; first < end; first += kRun) {
-      const std::size_t last = std::min(first + kRun, end);
-      // Branchless, so that the compiler vectorizes it; what shows nothing is not written to.
-      bool any = false;
-      for (std::size_t i = first; i < last; ++i) any |= depths[i] < 0;
-      if (!any) continue;
-      for (std::size_t i = first; i < last; ++i) {
-        const float distance = distance_of(depths[i], view);
-        depths[i] = depths[i] < 0 ? distance : depths[i];
-      }
-    }
-  });
-}
-
 // Scratch memory for frames in steps, several of which may be under way. Any thread.
 class ScratchPool {
  public:
@@ -188,7 +170,7 @@ struct Renderer::Frame {
   const Strategy& strategy() const { return *find_strategy(options.strategy); }
 
   void make_distances(Picture& picture) const {
-    if (rank.depths_are_distances()) return;
+    if (rank.depths_are_distances() || rank.has_distances) return;
     std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); }, picture);
   }
 

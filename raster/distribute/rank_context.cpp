@@ -11,6 +11,7 @@
 #include "comm/collectives.h"
 #include "raster/distribute/gather_regions.h"
 #include "raster/distribute/primitive_shares.h"
+#include "raster/pipeline/distances.h"
 #include "raster/pipeline/samples.h"
 
 namespace delray::raster {
@@ -198,19 +199,30 @@ image::BasicImage<Colour> RankContext::picture_around(const geometry::Rect& part
   if (scratch.taken != whole.colour.data() || clear.size() != tiles) clear.assign(tiles, 0);
   parallel::parallel_for(0, tiles, 1, [&](std::size_t index) {
     const geometry::Rect rect = screen.tile(static_cast<int>(index));
-    if (!part.contains(rect.x0, rect.y0)) {
+    const auto count = static_cast<std::size_t>(rect.width());
+    const auto from = [&](int y) {
+      return static_cast<std::size_t>(y - part.y0) * static_cast<std::size_t>(part.width()) +
+             static_cast<std::size_t>(rect.x0 - part.x0);
+    };
+    const auto is_empty = [&](int y) {
+      bool any = false;
+      for (std::size_t i = 0; i < count; ++i)
+        any |= image.depth.data()[from(y) + i] != image::kEmptyDepth;
+      return !any;
+    };
+    bool shows = false;
+    if (part.contains(rect.x0, rect.y0))
+      for (int y = rect.y0; y < rect.y1 && !shows; ++y) shows = !is_empty(y);
+    if (!shows) {
       if (clear[index] == 0) clear_pixels(rect, window);
       clear[index] = 1;
       return;
     }
     clear[index] = 0;
     for (int y = rect.y0; y < rect.y1; ++y) {
-      const std::size_t from =
-          static_cast<std::size_t>(y - part.y0) * static_cast<std::size_t>(part.width()) +
-          static_cast<std::size_t>(rect.x0 - part.x0);
-      const auto count = static_cast<std::size_t>(rect.width());
-      std::copy_n(image.colour.data() + from, count, whole.colour.data() + window.at(rect.x0, y));
-      std::copy_n(image.depth.data() + from, count, whole.depth.data() + window.at(rect.x0, y));
+      std::copy_n(image.colour.data() + from(y), count,
+                  whole.colour.data() + window.at(rect.x0, y));
+      std::copy_n(image.depth.data() + from(y), count, whole.depth.data() + window.at(rect.x0, y));
     }
   });
   scratch.clear_in = whole.colour.data();
@@ -219,10 +231,30 @@ image::BasicImage<Colour> RankContext::picture_around(const geometry::Rect& part
 }
 
 template <class Colour>
+void RankContext::make_distances(const loadbalance::Partition& partition,
+                                 image::BasicImage<Colour>& image) {
+  if (depths_are_distances()) return;
+  constexpr std::size_t kGrain = 16;  // rows
+  for (const loadbalance::Region& region : partition.regions) {
+    const geometry::Rect& rect = region.rect;
+    if (region.owner != number() || rect.empty()) continue;
+    parallel::parallel_for(0, static_cast<std::size_t>(rect.height()), kGrain, [&](std::size_t i) {
+      const std::size_t row = (static_cast<std::size_t>(rect.y0) + i) *
+                              static_cast<std::size_t>(image.width);
+      to_distances(image.depth.span().subspan(row + static_cast<std::size_t>(rect.x0),
+                                              static_cast<std::size_t>(rect.width())),
+                   screen.view);
+    });
+  }
+  has_distances = true;
+}
+
+template <class Colour>
 Picture RankContext::gather(const loadbalance::Partition& partition,
                             image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();
+  make_distances(partition, image);
   if (options.displays.empty()) {
     ImageTiles tiles{kTileSize / options.supersampling, screen.tiles_x, {}, {}};
     // Unless somebody else wrote into the image.

@@ -20,6 +20,7 @@
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/rank_context.h"
 #include "raster/packed/packed_drawing.h"
+#include "raster/pipeline/distances.h"
 #include "raster/pipeline/processor_seconds.h"
 #include "raster/pipeline/samples.h"
 
@@ -343,6 +344,15 @@ class Steps final : public FrameSteps {
     return pieces_of(rank_.prepared.scene, rank_.prepared.first_primitives, begin, end);
   }
 
+  // Of pixels that are final, by who has them.
+  void make_distances(composite::OwnedPixels& part) {
+    const std::span depths =
+        dynamic_cast<composite::ImageLayer<Colour>&>(*part.layer).image().depth.span();
+    for (const composite::PixelRange& range : part.ranges)
+      to_distances(depths.subspan(range.begin, range.size()), rank_.screen.view);
+    rank_.has_distances = true;
+  }
+
   Picture picture_of(composite::OwnedPixels&& part) {
     if (counts_only()) {
       timed(rank_.communicator, rank_.counts.phases.gather,
@@ -351,6 +361,7 @@ class Steps final : public FrameSteps {
     }
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
                            rank_.options.height);
+    make_distances(part);
     part = timed(rank_.communicator, rank_.counts.phases.gather, [&] {
       return composite::gather(rank_.communicator, std::move(part), rank_.root);
     });
