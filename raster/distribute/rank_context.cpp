@@ -239,8 +239,8 @@ void RankContext::make_distances(const loadbalance::Partition& partition,
     const geometry::Rect& rect = region.rect;
     if (region.owner != number() || rect.empty()) continue;
     parallel::parallel_for(0, static_cast<std::size_t>(rect.height()), kGrain, [&](std::size_t i) {
-      const std::size_t row = (static_cast<std::size_t>(rect.y0) + i) *
-                              static_cast<std::size_t>(image.width);
+      const std::size_t row =
+          (static_cast<std::size_t>(rect.y0) + i) * static_cast<std::size_t>(image.width);
       to_distances(image.depth.span().subspan(row + static_cast<std::size_t>(rect.x0),
                                               static_cast<std::size_t>(rect.width())),
                    screen.view);
