@@ -14,7 +14,8 @@ namespace delray::composite {
 // Operators that merge pixels.
 enum class Operator : std::uint8_t {
   // The nearer one wins, the lower interval of ranks on equal depths. A pixel that nothing covers
-  // has kEmptyDepth and the colour {}, so that every codec leaves the same bytes.
+  // has kEmptyDepth and the colour {}, or the background, so that every codec leaves the same
+  // bytes.
   nearest,
   // The lower interval of ranks lies over the higher (Porter and Duff 1984): ordered blending of
   // layers that were blended before. Depths are neither read nor written and do not travel; a pixel
@@ -37,7 +38,7 @@ class ImageLayer : public Layer {
   const image::BasicImage<Colour>& image() const { return image_; }
 
   // From now on only colours travel, of the pixels that were covered till then, and depths are not
-  // changed any more: what is replaced is not to be encoded again.
+  // changed any more: what is replaced, or settled (borrowed.h), is not to be encoded again.
   void forget_depth() { forgets_depth_ = true; }
   // The colour of pixels that nothing covers, {} if not set: what replaces others by nothing leaves
   // it. Those that are there already are not changed. REQUIRES: Operator::nearest; alike on ranks.
@@ -71,7 +72,6 @@ class ImageLayer : public Layer {
 
   // Whether depths travel.
   bool has_depth() const { return operator_ != Operator::over && !forgets_depth_; }
-  Colour background() const { return background_; }
   std::size_t bytes_per_pixel() const { return sizeof(Colour) + (has_depth() ? sizeof(float) : 0); }
   // Sets the bits of covered pixels of a group and returns how many. REQUIRES: mask is zero.
   std::uint64_t find_covered(std::size_t begin, std::size_t end, GroupMask& mask) const;

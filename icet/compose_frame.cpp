@@ -213,12 +213,8 @@ class FrameComposition {
       destinations.push_back({tiles().range_of(i), settings_.tiles[i].display});
     }
     const int shown = tile_of(settings_, ranks_.rank());
-    if (shown >= 0) {  // while others send theirs
-      for_each_tile([&](composite::Layer& tile, PixelRange pixels) {
-        if (&tile == tiles().layer(static_cast<std::size_t>(shown)))
-          composite::settle(tile, pixels);
-      });
-    }
+    if (shown >= 0 && settings_.tiles.size() == 1)  // while others send theirs
+      for_each_tile(composite::settle);
     part_ = composite::gather(ranks_, std::move(part_), destinations);
     if (shown < 0) return;
     const auto tile = static_cast<std::size_t>(shown);

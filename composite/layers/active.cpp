@@ -35,8 +35,14 @@ comm::Buffer ActiveLayer<Colour>::encode(PixelRange range) {
 template <class Colour>
 std::uint64_t ActiveLayer<Colour>::apply(PixelRange range, const comm::Buffer& pixels,
                                          Action action) {
+  return apply_covered(range, Coverage(range.size(), {pixels.data(), pixels.size()}), pixels,
+                       action);
+}
+
+template <class Colour>
+std::uint64_t ActiveLayer<Colour>::apply_covered(PixelRange range, const Coverage& coverage,
+                                                 const comm::Buffer& pixels, Action action) {
   assert(range.begin <= range.end && range.end <= this->pixels());
-  const Coverage coverage(range.size(), {pixels.data(), pixels.size()});
   const std::uint64_t covered = coverage.covered();
   comm::check_message(pixels.size() ==
                       coverage.encoded_bytes() + covered * this->bytes_per_pixel());

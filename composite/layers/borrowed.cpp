@@ -93,15 +93,16 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
   using typename ImageLayer<Colour>::Action;
   std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) override {
     const PixelRange blocks = blocks_of(range);
+    const Coverage coverage(range.size(), {pixels.data(), pixels.size()});
     if (action == Action::replace) {
       // Only at its ends others are left in a block.
       if (blocks.begin < blocks.end) settle_blocks({blocks.begin, blocks.begin + 1});
       if (blocks.begin + 1 < blocks.end) settle_blocks({blocks.end - 1, blocks.end});
       for (std::uint64_t i = blocks.begin; i < blocks.end; ++i) is_settled_[i] = 1;
     } else {
-      settle_covered(range, Coverage(range.size(), {pixels.data(), pixels.size()}));
+      settle_covered(range, coverage);
     }
-    return ActiveLayer<Colour>::apply(range, pixels, action);
+    return this->apply_covered(range, coverage, pixels, action);
   }
 
  private:
@@ -160,7 +161,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
           Colour* const colour = result.own_colour.data() + (part.begin - pixels.begin);
           float* const depth = result.own_depth.data() + (part.begin - pixels.begin);
           if (is_settled_[i] == 0) {
-            take(part, colour, depth);
+            take(part, colour, by_depth_ ? depth : nullptr);
             continue;
           }
           std::copy_n(this->image().colour.data() + part.begin, part.size(), colour);
@@ -173,7 +174,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
     return result;
   }
 
-  // Borrowed pixels become those of a layer.
+  // Borrowed pixels become those of a layer; without depths if there is no place for them.
   void take(PixelRange pixels, Colour* colour, float* depth) const {
     for_each_run(pixels, [&](std::size_t at, std::size_t size, std::optional<std::ptrdiff_t> from) {
       const Colour* const colours =
@@ -194,7 +195,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
         take_nearer(words(colours), from_.depth + *from, size, from_.empty_depth,
                     *words(&from_.background), words(colour + at));
       }
-      if (!this->has_depth()) return;
+      if (depth == nullptr) return;
       if (!from) {
         std::fill_n(depth + at, size, image::kEmptyDepth);
       } else {
@@ -296,7 +297,7 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
       if (is_settled_[i] != 0 || !is_wanted(i)) return;
       const PixelRange block = block_pixels(i);
       take(block, this->image().colour.data() + block.begin,
-           this->image().depth.data() + block.begin);
+           this->has_depth() ? this->image().depth.data() + block.begin : nullptr);
       is_settled_[i] = 1;
     });
   }

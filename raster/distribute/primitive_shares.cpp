@@ -5,13 +5,14 @@
 // Ranks get equal parts of what is left for them and those after them, or, where primitives of much
 // work make that worse by more than kKeep than it can be, as much as the busiest must have: the
 // least such bound is found by bisection (chains on chains: Pinar and Aykanat 2004). Cuts stay
-// while no rank has more than kKeep of an equal part, so that a camera at rest finds the same
+// while no rank has more than kKeep of that bound, so that a camera at rest finds the same
 // intervals. O((ranks + segments) * 40) on rank 0.
 //
 // Degenerate: frames without any work leave the cuts.
 #include "raster/distribute/primitive_shares.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "comm/bad_message.h"
@@ -22,51 +23,7 @@ namespace {
 
 constexpr double kSegments = 1024;  // of all ranks together, about; twice as many at most
 constexpr double kKeep = 1.02;
-
-}  // namespace
-
-std::uint64_t begin_of_equal_share(std::uint64_t all, int holders, int k) {
-  const auto n = static_cast<std::uint64_t>(holders), i = static_cast<std::uint64_t>(k);
-  return all / n * i + std::min(i, all % n);
-}
-
-void PrimitiveShares::measure(double work_each, double work_seen,
-                              std::span<const std::uint64_t> seen) {
-  last_.segments.clear();
-  if (last_.begin == last_.end) return;
-  const auto size = static_cast<double>(last_.end - last_.begin);
-  if (seen.empty()) {
-    last_.segments.push_back({last_.end, work_each * size + work_seen});
-    return;
-  }
-  const double work_sample = work_seen / static_cast<double>(seen.size());
-  const double enough = (work_each * size + work_seen) * ranks_ / kSegments;
-  std::uint64_t begin = last_.begin;
-  double work = 0;  // of samples since then
-  const auto end_at = [&](std::uint64_t end) {
-    if (end > begin)
-      last_.segments.push_back({end, work + work_each * static_cast<double>(end - begin)});
-    begin = end;
-    work = 0;
-  };
-  for (std::size_t i = 0, next = 0; i < seen.size(); i = next) {
-    while (next < seen.size() && seen[next] == seen[i]) ++next;
-    const double here = work_sample * static_cast<double>(next - i);
-    if (here >= enough) end_at(seen[i]);
-    work += here;
-    if (work + work_each * static_cast<double>(seen[i] + 1 - begin) >= enough) end_at(seen[i] + 1);
-  }
-  end_at(last_.end);
-}
-
-bool PrimitiveShares::remembers(std::span<const Done> done, std::uint64_t primitives) const {
-  if (cuts_.size() != done.size() + 1 || cuts_.back() != primitives) return false;
-  for (std::size_t k = 0; k < done.size(); ++k)
-    if (done[k].begin != cuts_[k] || done[k].end != cuts_[k + 1]) return false;
-  return true;
-}
-
-namespace {
+constexpr double kFewest = 16;  // segments of a rank
 
 // Primitives [begin, end) in order.
 struct Chain {
@@ -120,6 +77,53 @@ Filled fill(std::span<const Chain> chains, double all, std::size_t ranks, double
 
 }  // namespace
 
+std::uint64_t begin_of_equal_share(std::uint64_t all, int holders, int k) {
+  const auto n = static_cast<std::uint64_t>(holders), i = static_cast<std::uint64_t>(k);
+  return all / n * i + std::min(i, all % n);
+}
+
+void PrimitiveShares::measure(double work_each, double work_seen,
+                              std::span<const std::uint64_t> seen) {
+  last_.segments.clear();
+  if (last_.begin == last_.end) return;
+  const double all = work_each * static_cast<double>(last_.end - last_.begin) + work_seen;
+  if (seen.empty() || !(all > 0)) {
+    last_.segments.push_back({last_.end, all});
+    return;
+  }
+  assert(std::ranges::is_sorted(seen) && last_.begin <= seen.front() && seen.back() < last_.end);
+  const double work_sample = work_seen / static_cast<double>(seen.size());
+  const double enough = all * std::min(ranks_ / kSegments, 1 / kFewest);
+  std::uint64_t begin = last_.begin;
+  double work = 0;  // of samples since then
+  const auto end_at = [&](std::uint64_t end) {
+    if (end > begin)
+      last_.segments.push_back({end, work + work_each * static_cast<double>(end - begin)});
+    begin = end;
+    work = 0;
+  };
+  for (std::size_t i = 0, next = 0; i < seen.size(); i = next) {
+    while (next < seen.size() && seen[next] == seen[i]) ++next;
+    const double here = work_sample * static_cast<double>(next - i);
+    if (here >= enough) end_at(seen[i]);
+    work += here;
+    if (work + work_each * static_cast<double>(seen[i] + 1 - begin) >= enough) end_at(seen[i] + 1);
+  }
+  end_at(last_.end);
+}
+
+bool PrimitiveShares::remembers(std::span<const Done> done, std::uint64_t primitives) const {
+  if (cuts_.size() != done.size() + 1 || cuts_.back() != primitives) return false;
+  for (std::size_t k = 0; k < done.size(); ++k) {
+    const Done& of_rank = done[k];
+    if (of_rank.begin != cuts_[k] || of_rank.end != cuts_[k + 1]) return false;
+    const bool is_measured =
+        !of_rank.segments.empty() && of_rank.segments.back().end == of_rank.end;
+    if (of_rank.begin < of_rank.end && !is_measured) return false;
+  }
+  return true;
+}
+
 void PrimitiveShares::cut(std::span<const Done> done) {
   const std::size_t ranks = done.size();
   std::vector<Chain> chains;
@@ -136,14 +140,14 @@ void PrimitiveShares::cut(std::span<const Done> done) {
     all += sum;
     most = std::max(most, sum);
   }
-  const double equal = all / static_cast<double>(ranks);
-  if (most <= kKeep * equal) return;
-  double low = equal, high = all;
+  double low = all / static_cast<double>(ranks), high = all;
+  if (most <= kKeep * low) return;
   constexpr int kHalvings = 40;
   for (int step = 0; step < kHalvings && high > (1 + 1e-6) * low; ++step) {
     const double middle = (low + high) / 2;
     (fill(chains, all, ranks, middle, false).most <= middle * (1 + 1e-9) ? high : low) = middle;
   }
+  if (most <= kKeep * high) return;
   Filled filled = fill(chains, all, ranks, high, true);
   if (filled.most > kKeep * high) filled = fill(chains, all, ranks, high, false);
   cuts_ = std::move(filled.cuts);

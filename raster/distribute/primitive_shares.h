@@ -19,8 +19,9 @@ std::uint64_t begin_of_equal_share(std::uint64_t all, int holders, int k);
 class PrimitiveShares {
  public:
   // This rank's interval [begin, end) of the next frame; those of all ranks cover all primitives
-  // once. Equal shares where any rank was not part of the last frame. Collective: some 16 KiB from
-  // all ranks together and 16 bytes from each to rank 0, 8 for each rank back. O(ranks).
+  // once. Equal shares where any rank was not part of the last frame, or has not measured it.
+  // Collective: to rank 0 16 to 32 KiB from all ranks together, or 512 bytes and twice as many from
+  // each if that is more; 8 for each rank back. O(ranks + segments) there.
   std::pair<std::uint64_t, std::uint64_t> next(comm::Communicator& communicator,
                                                std::uint64_t primitives);
 
@@ -29,7 +30,8 @@ class PrimitiveShares {
   // samples of it, repeated where more is seen of one. If there are none, it is spread evenly over
   // the interval. O(samples).
   //
-  // REQUIRES: finite, >= 0; samples ascend, and are of the interval.
+  // REQUIRES: finite, >= 0; samples ascend, and are of the interval. For the interval of next(),
+  // once.
   void measure(double work_each, double work_seen, std::span<const std::uint64_t> seen);
 
  private:

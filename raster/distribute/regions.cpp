@@ -18,6 +18,12 @@
 #include "raster/pipeline/processor_seconds.h"
 
 namespace delray::raster {
+namespace {
+
+// Every eighth pixel of every eighth row of a tile, in each such row others than in the one before.
+bool is_sample(int x, int y) { return y % 8 == 0 && (x + y / 8 * 3) % 8 == 0; }
+
+}  // namespace
 
 void RegionCounts::operator+=(const RegionCounts& other) {
   phases += other.phases;
@@ -241,13 +247,6 @@ void RegionDrawing::sample_seen() {
   samples_seen_ = true;
   scratch_.seen.clear();
 }
-
-namespace {
-
-// Every eighth pixel of every eighth row of a tile, in each such row others than in the one before.
-bool is_sample(int x, int y) { return y % 8 == 0 && (x + y / 8 * 3) % 8 == 0; }
-
-}  // namespace
 
 void RegionDrawing::sample_seen(const TileJob& job, const VisibilityTile* tile,
                                 std::span<const BlendedFragment> blended,

@@ -339,6 +339,7 @@ TEST(Render, SortLastSendsOfWhereSomethingIsSeen) {
   options.width = 640;
   options.height = 512;
   options.scheme = "centralized";
+  options.codec = "dense";
   const Result alone = rendered_alone(scene, camera, options),
                last = rendered_alone(scene, camera, options, 3);
   EXPECT_TRUE(same_bytes(last.picture, alone.picture));

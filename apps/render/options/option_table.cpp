@@ -168,7 +168,7 @@ std::vector<RenderOption> rasterizer_options() {
           .reported("shading", is_raster),
       RenderOption::of(
           "--codec", [](auto& r) -> auto& { return r.raster.codec; }, group::kSharing,
-          "Pixel encoding between ranks, for --strategy sort-last (default: dense)")
+          "Pixel encoding between ranks, for --strategy sort-last (default: active)")
           .one_of(names_in(composite::codecs()))
           .unless(unless_raster(unless_strategy(&Strategy::composites, why_no_codec)))
           .reported("codec", strategy_that(&Strategy::composites)),

@@ -117,6 +117,33 @@ TEST(PrimitiveShares, AreCutBesidePrimitivesWithMuchWork) {
   EXPECT_EQ(four[2], (std::pair<std::uint64_t, std::uint64_t>{701, 702}));
 }
 
+// The same intervals from then on, though no cuts make ranks equal.
+TEST(PrimitiveShares, StayBesidePrimitivesWithMuchWork) {
+  const auto work = [](std::uint64_t i) { return i == 300 ? 5000.0 : 1.0; };
+  for (const int ranks : {2, 3, 7}) {
+    const Intervals once = after(2, ranks, 4000, work);
+    for (const int frames : {3, 4, 6}) EXPECT_EQ(after(frames, ranks, 4000, work), once) << ranks;
+  }
+}
+
+// Who has not measured its last frame does not say where its work lies.
+TEST(PrimitiveShares, BeginAnewWhereARankHasNotMeasured) {
+  for (const int silent : {0, 1, 2}) {
+    comm::run_threads(3, 1, [&](comm::Communicator& communicator) {
+      PrimitiveShares shares;
+      std::pair<std::uint64_t, std::uint64_t> mine;
+      for (int frame = 0; frame < 4; ++frame) {
+        mine = shares.next(communicator, 900);
+        if (frame == 2 && communicator.rank() == silent) continue;
+        const std::vector<std::uint64_t> seen(mine.first == 0 && mine.second > 0 ? 9U : 0U, 0);
+        shares.measure(1, mine.first == 0 ? 500 : 0, seen);
+      }
+      const auto k = static_cast<std::uint64_t>(communicator.rank());
+      EXPECT_EQ(mine, (std::pair{300 * k, 300 * k + 300})) << silent;
+    });
+  }
+}
+
 // What is drawn counts where nothing is seen, too.
 TEST(PrimitiveShares, CountWhatIsDrawn) {
   comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
