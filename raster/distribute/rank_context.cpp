@@ -9,9 +9,9 @@
 #include <cassert>
 
 #include "comm/collectives.h"
+#include "raster/distribute/distances.h"
 #include "raster/distribute/gather_regions.h"
 #include "raster/distribute/primitive_shares.h"
-#include "raster/pipeline/distances.h"
 #include "raster/pipeline/samples.h"
 
 namespace delray::raster {

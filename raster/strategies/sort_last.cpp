@@ -17,10 +17,10 @@
 #include "composite/metadata_only.h"
 #include "composite/scheme.h"
 #include "parallel/parallel_for.h"
+#include "raster/distribute/distances.h"
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/rank_context.h"
 #include "raster/packed/packed_drawing.h"
-#include "raster/pipeline/distances.h"
 #include "raster/pipeline/processor_seconds.h"
 #include "raster/pipeline/samples.h"
 

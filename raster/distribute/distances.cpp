@@ -1,6 +1,6 @@
 // Depths are negative and distances are not. Runs of pixels in which nothing is to be changed are
 // not written to.
-#include "raster/pipeline/distances.h"
+#include "raster/distribute/distances.h"
 
 #include <algorithm>
 
