@@ -38,7 +38,8 @@ class ImageLayer : public Layer {
   const image::BasicImage<Colour>& image() const { return image_; }
 
   // From now on only colours travel, of the pixels that were covered till then, and depths are not
-  // changed any more: what is replaced, or settled (borrowed.h), is not to be encoded again.
+  // changed any more: what is replaced, or settled (borrowed.h), is not to be encoded again, nor
+  // what lies in the same group of pixels (coverage.h).
   void forget_depth() { forgets_depth_ = true; }
   // The colour of pixels that nothing covers, {} if not set: what replaces others by nothing leaves
   // it. Those that are there already are not changed. REQUIRES: Operator::nearest; alike on ranks.

@@ -17,8 +17,6 @@
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "loadbalance/partition.h"
-#include "parallel/parallel_for.h"
-#include "raster/distribute/distances.h"
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/frame_report.h"
 #include "raster/distribute/rank_context.h"
@@ -169,19 +167,12 @@ struct Renderer::Frame {
 
   const Strategy& strategy() const { return *find_strategy(options.strategy); }
 
-  void make_distances(Picture& picture) const {
-    if (rank.depths_are_distances() || rank.has_distances) return;
-    std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); }, picture);
-  }
-
   FrameReport report() const { return make_report(rank, events); }
 
   // Collective.
   Result finish(comm::Communicator& communicator, Picture&& picture) {
     Result result{std::move(picture), std::move(rank.shown), {}};
     result.statistics = gather_statistics(communicator, report(), rank.prepared.packed != nullptr);
-    make_distances(result.picture);
-    for (Picture& display : result.shown) make_distances(display);
     if (communicator.rank() == 0 && options.strategy != "sort-last")
       result.statistics.partition = partition_of_ranks();
     if (options.eye_dome) {
@@ -323,7 +314,6 @@ Result Renderer::composite_displays(comm::Communicator& communicator, const scen
     Frame frame(*memory_, memory_->scratch, communicator, camera, of_display, progress);
     frame.rank.root = display.owner;
     Picture picture = frame.strategy().render(frame.rank);
-    frame.make_distances(picture);
     if (display.owner == communicator.rank()) result.shown.push_back(std::move(picture));
     all += frame.report();
   }

@@ -22,7 +22,7 @@ class ActiveLayer : public ImageLayer<Colour> {
  protected:
   using typename ImageLayer<Colour>::Action;
   std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) override;
-  // The same of a message whose coverage was read.
+  // Does what apply does, with a message whose coverage was read.
   std::uint64_t apply_covered(PixelRange range, const Coverage& coverage,
                               const comm::Buffer& pixels, Action action);
 };

@@ -21,7 +21,7 @@
 namespace delray::raster {
 namespace {
 
-constexpr double kSegments = 1024;  // of all ranks together, about; twice as many at most
+constexpr double kSegments = 1024;  // of all ranks together, to twice as many; or more by kFewest
 constexpr double kKeep = 1.02;
 constexpr double kFewest = 16;  // segments of a rank
 

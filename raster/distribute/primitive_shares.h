@@ -20,8 +20,8 @@ class PrimitiveShares {
  public:
   // This rank's interval [begin, end) of the next frame; those of all ranks cover all primitives
   // once. Equal shares where any rank was not part of the last frame, or has not measured it.
-  // Collective: to rank 0 16 to 32 KiB from all ranks together, or 512 bytes and twice as many from
-  // each if that is more; 8 for each rank back. O(ranks + segments) there.
+  // Collective: to rank 0 16 to 32 KiB from all ranks together, of more than 64 ranks 256 to 528
+  // bytes from each, and 32; 8 for each rank back. O(ranks + segments) there.
   std::pair<std::uint64_t, std::uint64_t> next(comm::Communicator& communicator,
                                                std::uint64_t primitives);
 

@@ -231,30 +231,16 @@ image::BasicImage<Colour> RankContext::picture_around(const geometry::Rect& part
 }
 
 template <class Colour>
-void RankContext::make_distances(const loadbalance::Partition& partition,
-                                 image::BasicImage<Colour>& image) {
-  if (depths_are_distances()) return;
-  constexpr std::size_t kGrain = 16;  // rows
-  for (const loadbalance::Region& region : partition.regions) {
-    const geometry::Rect& rect = region.rect;
-    if (region.owner != number() || rect.empty()) continue;
-    parallel::parallel_for(0, static_cast<std::size_t>(rect.height()), kGrain, [&](std::size_t i) {
-      const std::size_t row =
-          (static_cast<std::size_t>(rect.y0) + i) * static_cast<std::size_t>(image.width);
-      to_distances(image.depth.span().subspan(row + static_cast<std::size_t>(rect.x0),
-                                              static_cast<std::size_t>(rect.width())),
-                   screen.view);
-    });
-  }
-  has_distances = true;
-}
-
-template <class Colour>
 Picture RankContext::gather(const loadbalance::Partition& partition,
                             image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();
-  make_distances(partition, image);
+  if (!depths_are_distances()) {
+    std::vector<geometry::Rect> own;
+    for (const loadbalance::Region& region : partition.regions)
+      if (region.owner == number()) own.push_back(region.rect);
+    to_distances(image, own, screen.view);
+  }
   if (options.displays.empty()) {
     ImageTiles tiles{kTileSize / options.supersampling, screen.tiles_x, {}, {}};
     // Unless somebody else wrote into the image.

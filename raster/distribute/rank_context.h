@@ -56,8 +56,6 @@ struct RankContext {
   std::vector<int> rank_of_owner = {};
   // In steps, of which only the last may use the communicator: work is reported then.
   bool in_steps = false;
-  // Whether the picture has distances, which ranks have made of the depths of their pixels.
-  bool has_distances = false;
   // The rank that gets what is composited, a frame or a display of it.
   int root = 0;
   std::vector<Picture> shown = {};  // of this rank's displays, in their order
@@ -112,18 +110,13 @@ struct RankContext {
   template <class Colour>
   image::BasicImage<Colour> picture_around(const geometry::Rect& part,
                                            image::BasicImage<Colour>&& image);
-  // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Of displays
-  // their pictures, in `shown`. Collective.
+  // The picture on rank 0, of every region from its owner's image, with distances instead of
+  // depths; of size 0 elsewhere. Of displays their pictures, in `shown`. Collective.
   template <class Colour>
   Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);
   // An image of any content; the spare one if that fits.
   template <class Colour>
   image::BasicImage<Colour> take_image(int width, int height);
-
- private:
-  // In this rank's regions.
-  template <class Colour>
-  void make_distances(const loadbalance::Partition& partition, image::BasicImage<Colour>& image);
 };
 
 // Parts of regions in a tile, rects in samples, into a window of pixels: n x n samples averaged.

@@ -344,13 +344,12 @@ class Steps final : public FrameSteps {
     return pieces_of(rank_.prepared.scene, rank_.prepared.first_primitives, begin, end);
   }
 
-  // Of pixels that are final, by who has them.
+  // Who has pixels that are final makes distances of their depths.
   void make_distances(composite::OwnedPixels& part) {
     const std::span depths =
         dynamic_cast<composite::ImageLayer<Colour>&>(*part.layer).image().depth.span();
     for (const composite::PixelRange& range : part.ranges)
       to_distances(depths.subspan(range.begin, range.size()), rank_.screen.view);
-    rank_.has_distances = true;
   }
 
   Picture picture_of(composite::OwnedPixels&& part) {
@@ -361,8 +360,9 @@ class Steps final : public FrameSteps {
     }
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
                            rank_.options.height);
-    make_distances(part);
+    rank_.communicator.mark(comm::Phase::gather, 0);
     part = timed(rank_.communicator, rank_.counts.phases.gather, [&] {
+      make_distances(part);
       return composite::gather(rank_.communicator, std::move(part), rank_.root);
     });
     image::BasicImage<Colour> image = composite::take_image<Colour>(std::move(part));

@@ -117,7 +117,7 @@ TEST(PrimitiveShares, AreCutBesidePrimitivesWithMuchWork) {
   EXPECT_EQ(four[2], (std::pair<std::uint64_t, std::uint64_t>{701, 702}));
 }
 
-// The same intervals from then on, though no cuts make ranks equal.
+// Intervals stay from then on, though no cuts make ranks equal.
 TEST(PrimitiveShares, StayBesidePrimitivesWithMuchWork) {
   const auto work = [](std::uint64_t i) { return i == 300 ? 5000.0 : 1.0; };
   for (const int ranks : {2, 3, 7}) {
