@@ -187,10 +187,11 @@ class BorrowedLayer final : public ActiveLayer<Colour> {
       if (!from) {
         std::fill_n(colour + at, size, from_.background);
       } else if (colours == nullptr) {
-        for (std::size_t k = 0; k < size; ++k)
-          colour[at + k] = from_.depth[*from + static_cast<std::ptrdiff_t>(k)] < from_.empty_depth
-                               ? Colour{}
-                               : from_.background;
+        for (std::size_t k = 0; k < size; ++k) {
+          const bool covered =
+              from_.depth[*from + static_cast<std::ptrdiff_t>(k)] < from_.empty_depth;
+          colour[at + k] = covered ? Colour{} : from_.background;
+        }
       } else {
         take_nearer(words(colours), from_.depth + *from, size, from_.empty_depth,
                     *words(&from_.background), words(colour + at));

@@ -61,9 +61,9 @@ TEST(Distances, AreMadeInRectangles) {
     std::copy(depths.begin(), depths.end(), image.depth.data());
     parallel::Arena arena(3);
     arena.execute([&] { to_distances(image, rects, view); });
+    std::size_t i = 0;
     for (int y = 0; y < 300; ++y) {
-      for (int x = 0; x < 400; ++x) {
-        const auto i = static_cast<std::size_t>(y * 400 + x);
+      for (int x = 0; x < 400; ++x, ++i) {
         bool is_in = false;
         for (const geometry::Rect& rect : rects) is_in |= rect.contains(x, y);
         ASSERT_EQ(image.depth.data()[i],
