@@ -4,6 +4,7 @@
 #include "raster/pipeline/draws.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -90,6 +91,24 @@ DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
   if (list.clusters.size() >= (1U << (32 - kClusterBits)))
     throw std::length_error("one rank cannot rasterize more than 33 million clusters at once");
   return list;
+}
+
+std::vector<std::uint64_t> primitives_of(const DrawList& list,
+                                         std::span<const std::uint32_t> numbers) {
+  std::vector<std::size_t> next(list.clusters.size() + 1);
+  for (const std::uint32_t number : numbers) ++next[(number >> kClusterBits) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<std::uint64_t> primitives(numbers.size());
+  for (const std::uint32_t number : numbers)
+    primitives[next[number >> kClusterBits]++] = list.primitive_of(number);
+  next.pop_back();  // the others are the ends of clusters by now
+  auto begin = primitives.begin();
+  for (const std::size_t cluster_end : next) {
+    const auto end = primitives.begin() + static_cast<std::ptrdiff_t>(cluster_end);
+    std::sort(begin, end);
+    begin = end;
+  }
+  return primitives;
 }
 
 }  // namespace delray::raster

@@ -109,4 +109,9 @@ struct DrawList {
 // REQUIRES: no primitive is in two pieces.
 DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known = nullptr);
 
+// The primitives of numbers of the list, as often as they are given, ascending. By counting,
+// cluster by cluster: O(clusters + numbers log of those that a cluster has).
+std::vector<std::uint64_t> primitives_of(const DrawList& list,
+                                         std::span<const std::uint32_t> numbers);
+
 }  // namespace delray::raster

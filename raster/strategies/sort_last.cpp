@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
-#include <numeric>
 #include <type_traits>
 
 #include "comm/agree_on_failure.h"
@@ -181,24 +180,6 @@ std::unique_ptr<composite::Layer> mask_of(const RankContext& rank,
                                               {&rank.communicator, *rank.options.count_only});
 }
 
-// The primitives of some numbers of the list, ascending: by counting, cluster by cluster.
-std::vector<std::uint64_t> primitives_seen(const DrawList& list,
-                                           std::span<const std::uint32_t> numbers) {
-  std::vector<std::uint32_t> next(list.clusters.size() + 1);
-  for (const std::uint32_t number : numbers) ++next[(number >> kClusterBits) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<std::uint64_t> seen(numbers.size());
-  for (const std::uint32_t number : numbers)
-    seen[next[number >> kClusterBits]++] = list.primitive_of(number);
-  std::size_t begin = 0;
-  for (const std::uint32_t end : next) {  // of clusters by now, but for the last
-    std::sort(seen.begin() + static_cast<std::ptrdiff_t>(begin),
-              seen.begin() + static_cast<std::ptrdiff_t>(end));
-    begin = end;
-  }
-  return seen;
-}
-
 // Triangles are drawn as soon as they are set up, so that none are kept and hidden clusters are
 // skipped: that belongs to the first step, large and blended triangles and shading to the second.
 template <class Colour>
@@ -327,7 +308,7 @@ class Steps final : public FrameSteps {
       unit = (phases.transform + phases.bin + phases.rasterize + phases.shade) / work;
     }
     rank_.memory.primitive_shares.measure(unit * kPrimitivePrice, unit * shaded,
-                                          primitives_seen(list_, rank_.scratch.seen));
+                                          primitives_of(list_, rank_.scratch.seen));
   }
 
   std::vector<Piece> pieces() {

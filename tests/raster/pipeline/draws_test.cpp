@@ -87,5 +87,26 @@ TEST(Draws, NothingGivesAnEmptyList) {
   EXPECT_TRUE(list.clusters.empty());
 }
 
+TEST(Draws, PrimitivesOfNumbersAscend) {
+  const scenes::Scene scene = strips({700, 2500, 40});
+  const std::vector<std::uint64_t> first = scenes::first_primitives(scene);
+  const DrawList list = make_draw_list(pieces_of(scene, first, 150, 3100));
+  std::mt19937 random(3);
+  for (const int count : {0, 1, 7, 5000}) {
+    std::vector<std::uint32_t> numbers;
+    std::vector<std::uint64_t> expected;
+    for (int i = 0; i < count; ++i) {
+      const auto cluster = static_cast<std::uint32_t>(random() % list.clusters.size());
+      const Cluster& at = list.clusters[cluster];
+      const auto place = static_cast<std::uint32_t>(at.begin + random() % (at.end - at.begin));
+      numbers.push_back((cluster << kClusterBits) | place);
+      expected.push_back(list.primitive_of(numbers.back()));
+    }
+    std::ranges::sort(expected);
+    EXPECT_EQ(primitives_of(list, numbers), expected);
+  }
+  EXPECT_TRUE(primitives_of(DrawList{}, {}).empty());
+}
+
 }  // namespace
 }  // namespace delray::raster
