@@ -15,8 +15,6 @@
 #include <bit>
 #include <limits>
 
-#include "raytrace/scene/edges.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/first_hits/draw_triangles.cpp"
 #include <hwy/foreach_target.h>
@@ -111,6 +109,8 @@ HWY_INLINE void put_some(F v, M mask, float* to) {
 // A hit that is nearer than the next by less than this part may not be the one that Embree finds:
 // twice what depths that are firm may be off.
 constexpr float kTie = 1.0F + 0x1p-13F;
+// Barycentric: nor one that is nearer to an edge.
+constexpr float kOnEdge = 1e-5F;
 
 struct EdgeFunctions {
   F u, v, w, sum;
@@ -314,7 +314,7 @@ int keep_certain(DrawnBlock& block) {
     const M missed = hn::Eq(far, set(std::numeric_limits<float>::infinity()));
     const F u = load_floats(packet.u + i), v = load_floats(packet.v + i);
     const F least = hn::Min(hn::Min(u, v), set(1.0F) - (u + v));
-    const M apart = hn::And(hn::Ge(second, far * set(kTie)), hn::Ge(least, set(kNearEdge)));
+    const M apart = hn::And(hn::Ge(second, far * set(kTie)), hn::Ge(least, set(kOnEdge)));
     certain |= bits_of(missed, i) | (bits_of(apart, i) & ~block.edge);
   }
   if ((active & (~certain | block.unsure)) == 0) return std::popcount(active);

@@ -64,8 +64,6 @@ void share_vertices(RTCGeometry geometry, const GeometryInstance& instance,
     triangles.copy.assign(positions, positions + size);
     positions = triangles.copy.data();
   }
-  triangles.positions = positions;
-  triangles.corners = instance.mesh->triangles.data();
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
                              sizeof(glm::vec3), size);
 }
@@ -150,7 +148,6 @@ void add_piece(EmbreeScene::State& state, EmbreeScene::State::Instance& own,
   }
   EmbreeScene::State::Piece& piece = mesh.pieces[known->second];
   ++piece.uses;
-  own.shared = &piece.triangles;
   own.piece = instance.mesh;
   own.mesh = instance.mesh_number;
   own.to_world = instance.to_world;

@@ -54,8 +54,6 @@ struct EmbreeScene::State {
   // Data of triangles that Embree refers to beside the mesh.
   struct Triangles {
     std::vector<glm::vec3> copy = {};  // of positions that were unreadable
-    const glm::vec3* positions = nullptr;
-    const glm::uvec3* corners = nullptr;
     std::shared_ptr<const std::vector<std::uint64_t>> opaque = {};
     Splats splats = {};  // instead of triangles
   };
@@ -73,8 +71,7 @@ struct EmbreeScene::State {
     Tree tree = {};
   };
   struct Instance {
-    Triangles triangles = {};           // where it has a mesh of its own
-    const Triangles* shared = nullptr;  // otherwise, of its piece
+    Triangles triangles = {};  // where it has a mesh of its own
     const scenes::Mesh* piece = nullptr;
     std::uint32_t mesh = kMiss;
     glm::mat4x3 to_world{1.0F};

@@ -141,66 +141,28 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
   }
 }
 
-// A ray's line, and what it hit.
-struct EdgeHit {
-  glm::vec3 origin, direction;
-  Hit hit;
-};
-
-// Whether the ray may hit a neighbour of the triangle as well. Of points, of which there is no u
-// and v yet, always.
-bool is_near_edge(const EmbreeScene::State& scene, const EdgeHit& at) {
-  const EmbreeScene::State::Instance& own = scene.instances[at.hit.instance];
-  const bool is_shared = own.shared != nullptr;
-  const EmbreeScene::State::Triangles& triangles = is_shared ? *own.shared : own.triangles;
-  const float least = distance_from_edges(at.hit.u, at.hit.v);
-  if (triangles.corners == nullptr || least < kNearEdge) return least < kNearEdge;
-  const glm::uvec3& corners = triangles.corners[at.hit.triangle];
-  glm::vec3 p[3];
-  for (int k = 0; k < 3; ++k) {
-    p[k] = triangles.positions[corners[k]];
-    if (is_shared) p[k] = own.to_world * glm::vec4(p[k], 1.0F);
-  }
-  float reach = at.hit.distance * glm::length(at.direction);
-  if (is_shared) reach = std::max({reach, glm::length(at.origin), glm::length(own.to_world[3])});
-  return least < near_edge(p[0], p[1], p[2], at.direction, reach);
-}
-
-bool is_near_edge(const EmbreeScene::State& scene, const Ray& ray) {
-  return distance_from_edges(ray.u, ray.v) < kAskedFromEdge &&
-         is_near_edge(scene, {{ray.origin_x, ray.origin_y, ray.origin_z},
-                              {ray.direction_x, ray.direction_y, ray.direction_z},
-                              hit_of(ray)});
-}
-
-// Leaves of the rays that are asked about those that are near to an edge; whether there are any.
-bool keep_near_edges(const EmbreeScene::State& scene, const RayPacket& p, ActiveRays& edges) {
-  bool any = false;
-  for (int i = 0; i < kPacketRays; ++i) {
-    if (edges.ray[i] == 0) continue;
-    const bool is_near =
-        is_near_edge(scene, {{p.origin_x[i], p.origin_y[i], p.origin_z[i]},
-                             {p.direction_x[i], p.direction_y[i], p.direction_z[i]},
-                             hit_of(p, i)});
-    if (!is_near) edges.ray[i] = 0;
-    any = any || is_near;
-  }
-  return any;
+// Where a ray that has its nearest hit at a distance is traced again for others at the same one:
+// nothing is before that. Spheres and cylinders are entered before they are left: with those, from
+// where it was.
+float a_little_before(float near, float distance, bool has_splats) {
+  return has_splats ? near : std::max(near, distance - std::abs(distance) * 1e-5F);
 }
 
 // Decides between triangles that rays hit at the same distance.
 [[gnu::noinline, gnu::cold]] void break_ties(const EmbreeScene::State& scene,
                                              const ActiveRays& edges, RayPacket& packet,
-                                             bool coherent) {
+                                             bool has_splats) {
   RayPacket again = packet;
   Nearest nearest[kPacketRays];
   for (int i = 0; i < kPacketRays; ++i) {
+    if (edges.ray[i] == 0) continue;
+    again.near[i] = a_little_before(packet.near[i], packet.far[i], has_splats);
     again.far[i] = a_little_further(packet.far[i]);
     again.id[i] = static_cast<std::uint32_t>(i);
     nearest[i] = {};
     nearest[i].hit.distance = std::numeric_limits<float>::infinity();
   }
-  find_hits(scene, edges, again, coherent, nearest);
+  find_hits(scene, edges, again, false, nearest);
   for (int i = 0; i < kPacketRays; ++i) {
     const Nearest& least = nearest[i];
     if (edges.ray[i] == 0 || least.hit.triangle == kMiss) continue;
@@ -235,8 +197,9 @@ void keep_splat_place(const EmbreeScene::State& scene, std::uint32_t geometry, s
 }
 
 // Decides between triangles that a ray hits at the same distance.
-void break_tie(const EmbreeScene::State& scene, Ray& ray) {
+void break_tie(const EmbreeScene::State& scene, Ray& ray, bool has_splats) {
   Ray again = ray;
+  again.near = a_little_before(ray.near, ray.far, has_splats);
   again.far = a_little_further(ray.far);
   again.id = 0;
   Nearest least{};
@@ -256,7 +219,7 @@ void break_tie(const EmbreeScene::State& scene, Ray& ray) {
 void EmbreeScene::intersect(Ray& ray) const {
   find_hits(*state_, ray);
   if (ray.triangle == kMiss) return;
-  if (is_near_edge(*state_, ray)) break_tie(*state_, ray);
+  if (distance_from_edges(ray.u, ray.v) < kNearEdge) break_tie(*state_, ray, has_splats_);
   if (!has_splats_ || ray.instance != kMiss) return;
   keep_splat_place(*state_, ray.geometry, ray.triangle,
                    {{ray.origin_x, ray.origin_y, ray.origin_z},
@@ -269,8 +232,7 @@ void EmbreeScene::intersect(Ray& ray) const {
 void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const {
   find_hits(*state_, active, packet, coherent);
   ActiveRays edges;
-  if (find_edges(active, packet, edges) && keep_near_edges(*state_, packet, edges))
-    break_ties(*state_, edges, packet, coherent);
+  if (find_edges(active, packet, edges)) break_ties(*state_, edges, packet, has_splats_);
   if (has_splats_) keep_splat_places(*state_, active, packet);
 }
 

@@ -222,7 +222,7 @@ bool find_edge_lanes(const ActiveRays& active, const RayPacket& packet, ActiveRa
     const F least = hn::Min(hn::Min(u, v), set(1.0F) - (u + v));
     const auto* triangle = reinterpret_cast<const std::int32_t*>(packet.triangle) + i;
     const auto hit = hn::And(hn::Ne(hn::Load(di, triangle), set(-1)),
-                             hn::RebindMask(di, hn::Lt(least, set(kAskedFromEdge))));
+                             hn::RebindMask(di, hn::Lt(least, set(kNearEdge))));
     const I edge = hn::IfThenElseZero(hit, hn::Load(di, active.ray + i));
     hn::Store(edge, di, edges.ray + i);
     any = any || !hn::AllTrue(di, hn::Eq(edge, set(0)));
