@@ -228,21 +228,60 @@ Buffer reduce_buffers(Communicator& communicator, int root, Buffer&& mine, const
   return std::move(mine);
 }
 
-Buffer all_reduce_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine) {
-  const Fold f(communicator.size());
-  const int rank = communicator.rank();
-  fold(communicator, f, kTagAllReduce, mine, combine);
-  if (f.is_folded(rank)) return communicator.receive(rank - 1, kTagAllReduce);
-  const int position = f.position(rank);
-  for (int step = 1; step < f.power; step *= 2) {
-    const int partner = f.rank_at(position ^ step);
-    communicator.send(partner, kTagAllReduce, mine.copy());
-    Buffer theirs = communicator.receive(partner, kTagAllReduce);
-    if (position & step) std::swap(mine, theirs);
-    combine(mine, theirs);
+AllReduce::AllReduce(Communicator& communicator, Buffer&& mine, Combine combine)
+    : communicator_(communicator), combine_(std::move(combine)), mine_(std::move(mine)) {
+  const Fold f(communicator_.size());
+  const int rank = communicator_.rank();
+  if (f.is_folded(rank)) {
+    partner_ = rank - 1;
+    communicator_.send(partner_, kTagAllReduce, std::move(mine_));
+  } else if (rank < 2 * f.extra) {
+    partner_ = rank + 1;
+  } else {
+    send_round();
   }
-  if (rank < 2 * f.extra) communicator.send(rank + 1, kTagAllReduce, mine.copy());
-  return std::move(mine);
+}
+
+void AllReduce::send_round() {
+  const Fold f(communicator_.size());
+  const int rank = communicator_.rank();
+  step_ = std::max(1, 2 * step_);
+  partner_ = -1;
+  if (step_ < f.power) {
+    partner_ = f.rank_at(f.position(rank) ^ step_);
+    communicator_.send(partner_, kTagAllReduce, mine_.copy());
+  } else if (rank < 2 * f.extra) {
+    communicator_.send(rank + 1, kTagAllReduce, mine_.copy());
+  }
+}
+
+bool AllReduce::advance(Deadline deadline) {
+  const Fold f(communicator_.size());
+  const int rank = communicator_.rank();
+  while (partner_ >= 0) {
+    if (deadline.wait != Deadline::never().wait &&
+        !communicator_.probe(partner_, kTagAllReduce, deadline))
+      return false;
+    Buffer theirs = communicator_.receive(partner_, kTagAllReduce);
+    if (f.is_folded(rank)) {
+      mine_ = std::move(theirs);
+      partner_ = -1;
+      return true;
+    }
+    if (step_ > 0 && (f.position(rank) & step_) != 0) std::swap(mine_, theirs);
+    combine_(mine_, theirs);
+    send_round();
+  }
+  return true;
+}
+
+Buffer AllReduce::finish() {
+  advance(Deadline::never());
+  return std::move(mine_);
+}
+
+Buffer all_reduce_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine) {
+  return AllReduce(communicator, std::move(mine), combine).finish();
 }
 
 Buffer exclusive_scan_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine) {

@@ -66,6 +66,27 @@ using Combine = std::function<void(Buffer& lower, Buffer& upper)>;
 // The untyped forms of what follows. Root's result is in the returned buffer; that of other ranks
 // is unspecified.
 Buffer reduce_buffers(Communicator& communicator, int root, Buffer&& mine, const Combine& combine);
+// An all_reduce during which a rank turns to other things. REQUIRES: it is finished before the
+// rank calls another all_reduce; the communicator outlives it.
+class AllReduce {
+ public:
+  // Sends what can be sent.
+  AllReduce(Communicator& communicator, Buffer&& mine, Combine combine);
+  // Takes in what has arrived, without waiting for more; whether that was all.
+  bool advance() { return advance(Deadline::now()); }
+  // Waits for the rest.
+  Buffer finish();
+
+ private:
+  bool advance(Deadline deadline);
+  void send_round();
+
+  Communicator& communicator_;
+  const Combine combine_;
+  Buffer mine_;
+  int partner_ = -1;  // whose message comes next; -1: none
+  int step_ = 0;      // of the round at hand; 0: others are folded in first
+};
 Buffer all_reduce_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine);
 // Rank 0 gets an empty buffer, rank k what ranks 0 to k - 1 combine to.
 Buffer exclusive_scan_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine);

@@ -59,44 +59,24 @@ RegionDrawing RankContext::begin(const DrawList& list, std::span<const geometry:
       scratch);
 }
 
-geometry::Rect RankContext::hide_behind_others(RegionDrawing& drawing) {
-  if (ranks() == 1 || prepared.transparent || in_steps || options.shade == Shade::immediate)
-    return screen.frame();
-  const double before = communicator.seconds();
-  communicator.mark(comm::Phase::redistribute, 0);
-  std::vector<std::int32_t> least = drawing.farthest_of_blocks();
-  const std::size_t blocks = least.size();
-  const geometry::Rect mine = drawing.tiles_seen();
-  least.insert(least.end(), {mine.x0, mine.y0, -mine.x1, -mine.y1});
-  comm::all_reduce(communicator, std::span<std::int32_t>(least),
-                   [](std::int32_t a, std::int32_t b) { return std::min(a, b); });
-  geometry::Rect seen{least[blocks], least[blocks + 1], -least[blocks + 2], -least[blocks + 3]};
-  if (seen.empty()) seen = {0, 0, 1, 1};
-  least.resize(blocks);
-  drawing.hide_behind(std::move(least));
-  communicator.mark(comm::Phase::rasterize, 0);
-  counts.phases.redistribute += communicator.seconds() - before;
-  return geometry::intersection(
-      {seen.x0 * kTileSize, seen.y0 * kTileSize, seen.x1 * kTileSize, seen.y1 * kTileSize},
-      screen.frame());
-}
-
 void RankContext::report_work(const RegionCounts& done) const {
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
 }
 
-void RankContext::end(RegionDrawing& drawing, FinishTile finish_tile) {
-  const RegionCounts done = drawing.finish(finish_tile);
+void RankContext::count(const RegionCounts& done) {
   if (!in_steps) report_work(done);
   counts += done;
+}
+
+void RankContext::end(RegionDrawing& drawing, FinishTile finish_tile) {
+  count(drawing.finish(finish_tile));
 }
 
 void RankContext::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
                            parallel::FunctionRef<void(int, int)> rows_finished) {
   drawing.finish_rows(first, rows, finish_tile, [&](int begin, int end, const RegionCounts& done) {
-    report_work(done);
-    counts += done;
+    count(done);
     rows_finished(begin, end);
   });
 }

@@ -75,14 +75,11 @@ struct RankContext {
   int samples_per_pixel() const { return options.supersampling * options.supersampling; }
 
   void report_work(const RegionCounts& done) const;
+  // Adds it to the counts and, unless in steps, reports it.
+  void count(const RegionCounts& done);
 
   // A drawing of `list`, or of what it is given later, into regions (in pixels).
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
-  // Finds how far each block of the screen is at most on any rank, so that none shades what another
-  // hides, where drawings are composited and that can be known in time. Returns the part of the
-  // screen, in samples, outside of which no rank has drawn anything, as far as is known; of whole
-  // tiles, and at least one. Collective.
-  geometry::Rect hide_behind_others(RegionDrawing& drawing);
   // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
   void end(RegionDrawing& drawing, FinishTile finish_tile);
   // As RegionDrawing::finish_rows, and counts; work is reported before rows_finished is called.

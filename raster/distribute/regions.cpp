@@ -157,18 +157,33 @@ geometry::Rect RegionDrawing::tiles_seen() const {
 }
 
 RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
-  RegionCounts counts;
-  end_drawing_into(counts);
-  finish_jobs(tiles_.jobs, finish_tile, counts);
-  return counts;
+  if (finished_ == 0) end_drawing();
+  finish_jobs(std::span(tiles_.jobs).subspan(finished_), finish_tile);
+  return std::exchange(counts_, {});
+}
+
+std::span<const TileJob> RegionDrawing::finish_some(FinishTile finish_tile,
+                                                    parallel::FunctionRef<bool(int)> wanted,
+                                                    parallel::FunctionRef<bool()> more) {
+  assert(finished_ == 0);
+  const auto middle = std::stable_partition(tiles_.jobs.begin(), tiles_.jobs.end(),
+                                            [&](const TileJob& job) { return wanted(job.tile); });
+  const auto most = static_cast<std::size_t>(middle - tiles_.jobs.begin());
+  const std::size_t at_a_time = 2 * scratch_.workers.size();
+  while (finished_ < most && more()) {
+    if (finished_ == 0) end_drawing();
+    const std::size_t end = std::min(finished_ + at_a_time, most);
+    finish_jobs(std::span(tiles_.jobs).subspan(finished_, end - finished_), finish_tile);
+    finished_ = end;
+  }
+  return std::span(tiles_.jobs).first(finished_);
 }
 
 void RegionDrawing::finish_rows(int first, int rows, FinishTile finish_tile,
                                 RowsFinished rows_finished) {
   const Screen& screen = task_.screen;
   assert(0 <= first && first < screen.tiles_y && rows >= 1);
-  RegionCounts counts;
-  end_drawing_into(counts);
+  end_drawing();
   const auto job_at = [&](int row) {
     return std::partition_point(tiles_.jobs.begin(), tiles_.jobs.end(), [&](const TileJob& job) {
       return job.tile < row * screen.tiles_x;
@@ -177,28 +192,36 @@ void RegionDrawing::finish_rows(int first, int rows, FinishTile finish_tile,
   const auto finish_between = [&](int from, int to) {
     for (int begin = from; begin < to; begin += rows) {
       const int end = std::min(begin + rows, to);
-      finish_jobs(std::span(job_at(begin), job_at(end)), finish_tile, counts);
-      rows_finished(begin, end, std::exchange(counts, {}));
+      finish_jobs(std::span(job_at(begin), job_at(end)), finish_tile);
+      rows_finished(begin, end, std::exchange(counts_, {}));
     }
   };
   finish_between(first, screen.tiles_y);
   finish_between(0, first);
 }
 
-void RegionDrawing::end_drawing_into(RegionCounts& counts) {
-  counts.triangles = end_drawing(task_.screen, scratch_.workers, scratch_.deferred, costs_);
-  counts.phases.transform = costs_.set_up;
-  counts.phases.bin = costs_.sort;
-  counts.phases.rasterize = costs_.rasterize;
-  counts.shaded = costs_.shaded;
+void RegionDrawing::end_drawing() {
+  counts_.triangles =
+      raster::end_drawing(task_.screen, scratch_.workers, scratch_.deferred, costs_);
+  counts_.phases.transform = costs_.set_up;
+  counts_.phases.bin = costs_.sort;
+  counts_.phases.rasterize = costs_.rasterize;
+  counts_.shaded = costs_.shaded;
 }
 
-void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) const {
+void RegionDrawing::hide_behind(std::vector<std::int32_t>&& codes) {
+  hidden_behind_ = std::move(codes);
+  scratch_.partly_hidden.resize(static_cast<std::size_t>(task_.screen.tiles()));
+}
+
+void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) {
   constexpr std::size_t kBlocks = VisibilityTile::kBlocks;
   if (hidden_behind_.empty()) return;
   const auto codes = std::span(hidden_behind_).subspan(static_cast<std::size_t>(tile) * kBlocks);
+  bool any = false;
   for (int block = 0; block < VisibilityTile::kBlocks; ++block)
-    if (codes[block] != kEmptyCode) visibility.drop_behind(block, codes[block]);
+    if (codes[block] != kEmptyCode) any |= visibility.drop_behind(block, codes[block]);
+  scratch_.partly_hidden[static_cast<std::size_t>(tile)] = any ? 1 : 0;
 }
 
 ShadedPixels RegionDrawing::shaded_pixels(int tile) const {
@@ -246,30 +269,48 @@ void RegionDrawing::find_seen(const TileJob& job, const VisibilityTile* tile, Ti
 void RegionDrawing::sample_seen() {
   samples_seen_ = true;
   scratch_.seen.clear();
+  scratch_.seen_at.clear();
+}
+
+void RegionDrawing::drop_samples(parallel::FunctionRef<bool(std::uint64_t pixel)> drops) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < scratch_.seen.size(); ++i) {
+    if (drops(scratch_.seen_at[i])) continue;
+    scratch_.seen[kept] = scratch_.seen[i];
+    scratch_.seen_at[kept++] = scratch_.seen_at[i];
+  }
+  scratch_.seen.resize(kept);
+  scratch_.seen_at.resize(kept);
 }
 
 void RegionDrawing::sample_seen(const TileJob& job, const VisibilityTile* tile,
                                 std::span<const BlendedFragment> blended,
-                                std::vector<std::uint32_t>& numbers) const {
+                                std::vector<std::uint32_t>& numbers,
+                                std::vector<std::uint64_t>& at) const {
+  const geometry::Rect corner = task_.screen.tile(job.tile);
+  const auto add = [&](std::int64_t key, int x, int y) {
+    const std::uint32_t number = number_of(key);
+    if (!is_sample(x, y) || number == kNothing) return;
+    numbers.push_back(number);
+    at.push_back(static_cast<std::uint64_t>(corner.y0 + y) *
+                     static_cast<std::uint64_t>(task_.screen.width) +
+                 static_cast<std::uint64_t>(corner.x0 + x));
+  };
   for (const BlendedFragment& fragment : blended) {
     const auto pixel = static_cast<int>(fragment.pixel);
-    if (is_sample(pixel % kTileSize, pixel / kTileSize)) numbers.push_back(number_of(fragment.key));
+    add(fragment.key, pixel % kTileSize, pixel / kTileSize);
   }
   if (tile == nullptr) return;
-  const geometry::Rect corner = task_.screen.tile(job.tile);
   for (const geometry::Rect& rect : tiles_.rects_of(job)) {
     for (int y = rect.y0 - corner.y0; y < rect.y1 - corner.y0; ++y) {
       if (y % 8 != 0) continue;
-      for (int x = rect.x0 - corner.x0; x < rect.x1 - corner.x0; ++x) {
-        const std::uint32_t number = number_of(tile->key[y * kTileSize + x]);
-        if (is_sample(x, y) && number != kNothing) numbers.push_back(number);
-      }
+      for (int x = rect.x0 - corner.x0; x < rect.x1 - corner.x0; ++x)
+        add(tile->key[y * kTileSize + x], x, y);
     }
   }
 }
 
-void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
-                                RegionCounts& counts) {
+void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile) {
   const Screen& screen = task_.screen;
   ProcessorSeconds rasterize_seconds, shade_seconds;
   std::atomic<std::uint64_t> fragments{0}, shaded{0};
@@ -278,6 +319,7 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
   parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t worker) {
     StageClock<2> clock;
     std::vector<std::uint32_t> seen;
+    std::vector<std::uint64_t> seen_at;
     TileMemory& mine = *scratch_.tile_memory[worker];
     std::vector<std::uint32_t> draws;
     std::uint64_t shaded_here = 0, shown_here = 0;
@@ -302,7 +344,7 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
       if (tile != nullptr) drop_hidden(index, *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
                    scratch_.deferred.blended.of_tile(index), tile, mine.blended);
-      if (samples_seen_) sample_seen(jobs[k], tile, mine.blended, seen);
+      if (samples_seen_) sample_seen(jobs[k], tile, mine.blended, seen, seen_at);
       clock.finish(0);
       TileView view(frame_->shading(), tile, shaded_pixels(index), mine);
       draws.clear();
@@ -322,12 +364,13 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
     if (seen.empty()) return;
     const std::lock_guard lock(mutex);
     scratch_.seen.insert(scratch_.seen.end(), seen.begin(), seen.end());
+    scratch_.seen_at.insert(scratch_.seen_at.end(), seen_at.begin(), seen_at.end());
   });
-  counts.phases.rasterize += rasterize_seconds.seconds();
-  counts.phases.shade += shade_seconds.seconds();
-  counts.fragments += fragments;
-  counts.shaded += shaded;
-  counts.tiles += jobs.size();
+  counts_.phases.rasterize += rasterize_seconds.seconds();
+  counts_.phases.shade += shade_seconds.seconds();
+  counts_.fragments += fragments;
+  counts_.shaded += shaded;
+  counts_.tiles += jobs.size();
 }
 
 }  // namespace delray::raster

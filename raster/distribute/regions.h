@@ -29,7 +29,12 @@ struct Scratch {
   // By tile, of drawings whose colours are looked up as they are drawn; and how many these were.
   std::vector<std::unique_ptr<TileColours>> tile_colours;
   std::uint64_t coloured = 0;
-  std::vector<std::uint32_t> seen;  // numbers of the list, of a drawing that was asked for them
+  // Of a drawing that was asked for them: numbers of the list and, of each, the pixel of the
+  // screen.
+  std::vector<std::uint32_t> seen;
+  std::vector<std::uint64_t> seen_at;
+  // By tile: whether others hid anything of it in the last drawing that was told.
+  std::vector<std::uint8_t> partly_hidden;
 };
 
 // Times of rendering, summed over threads, and counts of the work.
@@ -100,15 +105,23 @@ class RegionDrawing {
   std::vector<std::int32_t> farthest_of_blocks() const {
     return scratch_.tiles.farthest_of_blocks(task_.screen);
   }
-  void hide_behind(std::vector<std::int32_t>&& codes) { hidden_behind_ = std::move(codes); }
+  void hide_behind(std::vector<std::int32_t>&& codes);
+  std::span<const std::int32_t> hidden_behind() const { return hidden_behind_; }
   // Puts into Scratch::seen, as tiles are finished, of one in 64 of their pixels the number of the
   // triangle that is seen there, if any, and of those that are blended before it, in any order.
   void sample_seen();
+  // Takes samples of these pixels of the screen out of them again.
+  void drop_samples(parallel::FunctionRef<bool(std::uint64_t pixel)> drops);
   // Columns and rows of tiles around all that is drawn by now, or waits for the end.
   geometry::Rect tiles_seen() const;
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
   // parts of regions in it. Parallel. To be called once, in the end.
   RegionCounts finish(FinishTile finish_tile);
+  // Before finish, does those of its tiles that are wanted, a few at a time, for as long as more()
+  // says so, which is called in the caller's thread. Returns them.
+  std::span<const TileJob> finish_some(FinishTile finish_tile,
+                                       parallel::FunctionRef<bool(int tile)> wanted,
+                                       parallel::FunctionRef<bool()> more);
   // As finish, `rows` rows of tiles at a time, from row `first` on and from the top to it again.
   // After each time rows_finished is called, in the caller's thread.
   //
@@ -118,21 +131,21 @@ class RegionDrawing {
  private:
   RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
                 const PreparedFrame* frame, Scratch& scratch);
-  void end_drawing_into(RegionCounts& counts);
+  void end_drawing();
   void find_large(int tile, std::vector<std::uint32_t>& draws) const;
   void find_seen(const TileJob& job, const VisibilityTile* tile, TileMemory& memory,
                  std::vector<std::uint32_t>& draws) const;
-  void drop_hidden(int tile, VisibilityTile& visibility) const;
+  void drop_hidden(int tile, VisibilityTile& visibility);
   void sample_seen(const TileJob& job, const VisibilityTile* tile,
-                   std::span<const BlendedFragment> blended,
-                   std::vector<std::uint32_t>& numbers) const;
+                   std::span<const BlendedFragment> blended, std::vector<std::uint32_t>& numbers,
+                   std::vector<std::uint64_t>& at) const;
   bool looks_up_colours() const { return into_tiles_.tile_drawn != nullptr; }
   ShadedPixels shaded_pixels(int tile) const;
-  void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
+  void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile);
 
   const RegionTask task_;
   Scratch& scratch_;
-  const TileJobs tiles_;
+  TileJobs tiles_;
   std::unique_ptr<PreparedFrame> own_frame_;
   const PreparedFrame* frame_;
   MeshHolder* const holder_;  // of tiles that are finished; null: what was drawn is there
@@ -140,6 +153,8 @@ class RegionDrawing {
   DrawCosts costs_;
   std::vector<std::int32_t> hidden_behind_;  // empty: nothing is known
   bool samples_seen_ = false;
+  std::size_t finished_ = 0;  // jobs
+  RegionCounts counts_;       // of these, from when drawing ended
 };
 
 }  // namespace delray::raster

@@ -377,10 +377,14 @@ std::int32_t VisibilityTile::farthest_now(int block) const {
   return static_cast<std::int32_t>(last >> 32);
 }
 
-void VisibilityTile::drop_behind(int block, std::int32_t code) {
+bool VisibilityTile::drop_behind(int block, std::int32_t code) {
+  std::int64_t dropped = 0;
   for_each_key(key, block, [&](std::int64_t& here) {
-    here = static_cast<std::int32_t>(here >> 32) > code ? kEmptyKey : here;
+    const std::int64_t kept = static_cast<std::int32_t>(here >> 32) > code ? kEmptyKey : here;
+    dropped |= kept ^ here;
+    here = kept;
   });
+  return dropped != 0;
 }
 
 void rasterize(const Screen& screen, const geometry::Rect& rect,

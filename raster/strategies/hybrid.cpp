@@ -12,6 +12,7 @@
 #include "parallel/parallel_for.h"
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/hybrid_shares.h"
+#include "raster/distribute/others_depths.h"
 #include "raster/distribute/tile_fragments.h"
 #include "raster/pipeline/samples.h"
 
@@ -70,8 +71,7 @@ class Drawing {
     rank_.communicator.mark(comm::Phase::rasterize, 0);
     RegionDrawing drawing = rank_.begin(out_.list, rects);
     drawing.draw_all();
-    rank_.hide_behind_others(drawing);
-    rank_.end(drawing, [&](std::span<const Rect> parts, TileView& tile) {
+    const auto finish_tile = [&](std::span<const Rect> parts, TileView& tile) {
       const int k =
           parts.front().y0 / kTileSize * rank_.screen.tiles_x + parts.front().x0 / kTileSize;
       for (const Rect& part : parts) {
@@ -86,7 +86,15 @@ class Drawing {
           tile.shade_pixels(part, samples(), window_);
         }
       }
+    };
+    OthersDepths others(rank_, drawing);
+    // In tiles of its own region alone in which no other draws anything.
+    others.finish_meanwhile(finish_tile, [&](int tile) {
+      const Rect rect = rank_.screen.tile(tile);
+      return geometry::intersection(rect, own) == rect && !contested_[tile];
     });
+    others.hide();
+    rank_.end(drawing, finish_tile);
   }
 
   // Sends others what was seen in their regions and composites what they saw in this rank's.

@@ -18,6 +18,7 @@
 #include "parallel/parallel_for.h"
 #include "raster/distribute/distances.h"
 #include "raster/distribute/frame_memory.h"
+#include "raster/distribute/others_depths.h"
 #include "raster/distribute/rank_context.h"
 #include "raster/packed/packed_drawing.h"
 #include "raster/pipeline/processor_seconds.h"
@@ -218,6 +219,9 @@ class Steps final : public FrameSteps {
       const image::BasicImage<Colour> image = rank_.end_samples<Colour>(*drawing_);
       rank_.communicator.mark(comm::Phase::compose, 0);  // ranks that do more than count do not
       layer_ = mask_of(rank_, image);
+    } else if (finishes_early()) {
+      layer_ = composite::find_codec(rank_.options.codec)
+                   ->make(others_->end_samples_meanwhile<Colour>(seen_));
     } else {
       // The part is copied in the end.
       is_part_ =
@@ -250,7 +254,9 @@ class Steps final : public FrameSteps {
 
   // Between the first two, where the communicator may be used. Collective.
   void hide_behind_others() {
-    if (!shades_last() && !has_cells()) seen_ = rank_.hide_behind_others(*drawing_);
+    if (shades_last() || has_cells()) return;
+    others_.emplace(rank_, *drawing_);
+    if (!finishes_early()) seen_ = others_->hide();
   }
 
   // Whether tiles can go to their owners before all are finished.
@@ -268,6 +274,7 @@ class Steps final : public FrameSteps {
  private:
   const DrawList& list() const { return packed_ ? packed_->list() : list_; }
   void drop_drawing() {
+    others_.reset();
     drawing_.reset();
     if (packed_) packed_->count();
     packed_.reset();
@@ -280,6 +287,12 @@ class Steps final : public FrameSteps {
     return std::any_of(materials.begin(), materials.end(), [&](const scenes::Material& material) {
       return shading::texture_sets(rank_.prepared.shader(), material) > 1;
     });
+  }
+  // Whether this rank need not wait until it knows what others hide: its image will be of the whole
+  // frame, and what they hide can be taken out of it.
+  bool finishes_early() const {
+    return others_ && others_->is_pending() && others_->shows_much() && !has_tiles() &&
+           !rank_.options.count_only && packed_ == nullptr && rank_.options.supersampling == 1;
   }
   bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }
   bool counts_only() const {
@@ -360,6 +373,7 @@ class Steps final : public FrameSteps {
   DrawList list_;
   std::unique_ptr<PackedDrawing> packed_;  // instead of the list
   std::unique_ptr<RegionDrawing> drawing_;
+  std::optional<OthersDepths> others_;
   geometry::Rect seen_;                      // by any rank; set before it is rasterized
   bool is_part_ = false;                     // layer_ has no more of the frame
   image::BasicImage<Colour> image_;          // a single rank's

@@ -128,6 +128,26 @@ TEST_P(CollectivesTest, ReductionsKeepRankOrder) {
   });
 }
 
+TEST_P(CollectivesTest, ReductionsGoOnWhileRanksDoOtherThings) {
+  for_ranks([](Communicator& c) {
+    for (int round = 0; round < 6; ++round) {
+      Affine expected, own = affine_of(c.rank(), static_cast<std::size_t>(round));
+      for (int rank = 0; rank < c.size(); ++rank)
+        expected = then(expected, affine_of(rank, static_cast<std::size_t>(round)));
+      AllReduce reduction(c, Buffer::of_value(own), elementwise<Affine>(then));
+      bool all = false;
+      for (int asked = (c.rank() + round) % 4; asked > 0; --asked) {
+        const bool now = reduction.advance();
+        EXPECT_TRUE(now || !all);
+        all = now;
+      }
+      EXPECT_EQ(reduction.finish().as<Affine>()[0], expected);
+      // Another one may follow at once.
+      EXPECT_EQ(all_reduce_value(c, 1, std::plus<>()), c.size());
+    }
+  });
+}
+
 TEST_P(CollectivesTest, FloatingPointSumsAreTheSameEverywhere) {
   // What the machine computed in its first run, for each number of ranks.
   static std::vector<double> first(64, 0);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "comm/forwarding.h"
 #include "comm/ledger.h"
 #include "comm/recording.h"
 #include "comm/threads.h"
@@ -238,6 +239,60 @@ TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
     EXPECT_TRUE(same_bytes(pictures[0], pictures[1]));
     EXPECT_GT(statistics[0].shaded, 30000U);
     EXPECT_LT(statistics[1].shaded, statistics[0].shaded * 6 / 5) << front_first;
+  }
+}
+
+// Tells a rank that polls for a message nothing until it waits, or waits at once.
+class Telling final : public comm::ForwardingCommunicator {
+ public:
+  Telling(comm::Communicator& inner, bool at_once)
+      : ForwardingCommunicator(inner), at_once_(at_once) {}
+  std::optional<comm::Envelope> probe(int from, comm::Tag tag, comm::Deadline deadline) override {
+    if (deadline.wait != comm::Deadline::now().wait) return inner().probe(from, tag, deadline);
+    if (!at_once_) return std::nullopt;
+    return inner().probe(from, tag, comm::Deadline::never());
+  }
+
+ private:
+  const bool at_once_;
+};
+
+// A rank that is done before others goes on without knowing what they hide: that changes neither
+// pictures nor counts nor messages, though a small wall moves before a large one.
+TEST(SortLast, FramesAreTheSameWhenOthersAreLate) {
+  scenes::Scene scene = wall();
+  glm::mat4x3 small(0.25F);
+  small[3].z = 1.5F;
+  scene.instances = {{0, glm::mat4x3(1.0F)}, {0, small}};
+  for (const int ranks : {2, 3}) {
+    std::vector<Picture> pictures[2];
+    std::vector<std::uint64_t> counts[2];
+    for (const bool at_once : {false, true}) {
+      std::vector<std::vector<comm::Event>> events(static_cast<std::size_t>(ranks));
+      comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+        Telling telling(communicator, at_once);
+        comm::Recording recording(telling, events[static_cast<std::size_t>(communicator.rank())]);
+        Renderer renderer(scene);
+        for (int frame = 0; frame < 5; ++frame) {
+          scenes::Camera camera = camera_before_wall();
+          camera.eye.x += 0.3F * static_cast<float>(frame);
+          RenderOptions options;
+          options.width = 640;
+          options.height = 500;
+          Result result = renderer.render(recording, camera, options);
+          if (communicator.rank() != 0) continue;
+          pictures[at_once].push_back(std::move(result.picture));
+          for (const RankStatistics& rank : result.statistics.ranks)
+            counts[at_once].insert(counts[at_once].end(), {rank.shaded, rank.bytes_sent});
+        }
+      });
+      for (const std::vector<comm::Event>& of_rank : events)
+        for (const comm::Event& event : of_rank)
+          if (event.kind == comm::Event::Kind::send) counts[at_once].push_back(event.amount);
+    }
+    EXPECT_EQ(counts[0], counts[1]) << ranks;
+    for (std::size_t frame = 0; frame < pictures[0].size(); ++frame)
+      EXPECT_TRUE(same_bytes(pictures[0][frame], pictures[1][frame])) << ranks << ' ' << frame;
   }
 }
 
