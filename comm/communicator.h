@@ -97,7 +97,9 @@ class Communicator {
   // (Network::is_bus()).
   virtual void multicast(std::span<const int> to, Tag tag, Buffer&& message);
   // Returns once nothing that this rank has sent needs it any more: it may turn to other things for
-  // long, and nobody waits for it. Takes in what arrives meanwhile. REQUIRES: each rank that has
+  // long, and nobody waits for it. Takes in what arrives meanwhile. Where processes of a machine
+  // outnumber its cores also, for 50 ms at most, once they have taken what lies in memory that they
+  // share. REQUIRES: each rank that has
   // not received all of it yet is in a call of the communicator, or comes to one by itself.
   virtual void finish_sends() {}
   // Waits for a message and takes it; first in, first out per source and tag.

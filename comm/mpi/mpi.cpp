@@ -16,6 +16,7 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "comm/mpi/mpi_end.h"
 #include "comm/mpi/mpi_engine.h"
 #include "comm/mpi/mpi_port.h"
+#include "comm/transport/block_pool.h"
 #include "comm/transport/first_failure.h"
 
 namespace delray::comm {
@@ -93,6 +95,15 @@ class MpiCommunicator final : public Communicator {
       for (const auto& port : engine_->ports) port->pull();
       engine_->finish_some();
     }
+    if (!engine_->cores_are_scarce) return;
+    // Who turns to other things takes the core from ranks that have yet to take what they got.
+    // Sleeping, as the system takes a rank that yields to want no core for long; and not until it
+    // is woken, as then all would be woken onto the core of who does it.
+    constexpr std::chrono::milliseconds kLongest{50};
+    constexpr std::chrono::microseconds kBetweenLooks{200};
+    const Wait late(kLongest);
+    while (internal::block_pool().lends() && !late.is_over())
+      std::this_thread::sleep_for(kBetweenLooks);
   }
 
   Buffer receive(int from_or_any, Tag tag_or_any) override {

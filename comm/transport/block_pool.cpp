@@ -1,8 +1,8 @@
 // A pool with segregated free lists, four sizes to each power of two.
 //
 // A block is taken from the list of its size or of one up to twice as large, else cut from the
-// shared memory, else allocated. Blocks lent to other processes are collected when the next block
-// is taken. Constant time, but for the blocks that are lent.
+// shared memory, else allocated. Blocks lent to other processes are collected when there is none
+// to be taken. Constant time, but for the blocks that are lent.
 //
 // Degenerate: once memory is shared, blocks of the heap are no longer kept; beyond a limit they are
 // freed at once.
@@ -49,6 +49,7 @@ Block* BlockPool::take(std::size_t bytes) {
   const std::size_t index = index_of(bytes);
   {
     const std::scoped_lock lock(mutex_);
+    if (Block* const block = take_kept(index)) return block;
     take_back_what_was_lent();
     if (Block* const block = take_kept(index)) return block;
     if (Block* const block = cut(index)) return block;
@@ -71,6 +72,12 @@ std::size_t BlockPool::lend(Block* block) {
   const std::scoped_lock lock(mutex_);
   lent_.push_back(block);
   return static_cast<std::size_t>(reinterpret_cast<std::byte*>(block) - shared_.data());
+}
+
+bool BlockPool::lends() {
+  const std::scoped_lock lock(mutex_);
+  take_back_what_was_lent();
+  return !lent_.empty();
 }
 
 // A block of up to twice the size is better than fresh memory.

@@ -39,6 +39,8 @@ class BlockPool {
     return block.process != 0 && block.process == process_;
   }
   std::size_t lend(Block* block);
+  // Whether another process has not given back what was lent to it.
+  bool lends();
 
  private:
   Block* take_kept(std::size_t index);

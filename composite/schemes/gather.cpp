@@ -8,6 +8,25 @@
 #include "composite/schemes/exchange.h"
 
 namespace delray::composite {
+namespace {
+
+// Messages that were read: ranks of a machine that wait for what they have lent go on when all are
+// given back. Those that went on before others would take the core from who still gathers.
+class Kept {
+ public:
+  void keep(comm::Buffer&& message) {
+    constexpr std::size_t kMost = std::size_t{1} << 26;  // bytes
+    if (bytes_ + message.size() > kMost) return;
+    bytes_ += message.size();
+    messages_.push_back(std::move(message));
+  }
+
+ private:
+  std::vector<comm::Buffer> messages_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
 
 OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part, int root) {
   const std::uint64_t pixels = part.layer == nullptr ? 0 : part.layer->pixels();
@@ -40,6 +59,7 @@ OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part,
     }
   }
   std::vector<PixelRange> own;
+  Kept kept;
   for (const Destination& to : destinations) {
     if (to.rank != communicator.rank()) continue;
     for (int from = 0; from < communicator.size(); ++from) {
@@ -47,7 +67,9 @@ OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part,
       const comm::Buffer ranges = communicator.receive(from, kTagGatherRanges);
       for (const PixelRange& range : ranges.as<PixelRange>()) {
         for_each_message(range, 1, [&](PixelRange piece) {
-          part.layer->replace(piece, communicator.receive(from, kTagGatherPixels));
+          comm::Buffer pixels = communicator.receive(from, kTagGatherPixels);
+          part.layer->replace(piece, pixels);
+          kept.keep(std::move(pixels));
         });
       }
     }
