@@ -102,8 +102,15 @@ class MpiCommunicator final : public Communicator {
     constexpr std::chrono::milliseconds kLongest{50};
     constexpr std::chrono::microseconds kBetweenLooks{200};
     const Wait late(kLongest);
-    while (internal::block_pool().lends() && !late.is_over())
+    for (;;) {
+      const std::size_t lent = internal::block_pool().lent();
+      std::size_t& kept = engine_->kept_by_others;  // is not waited for again
+      if (late.is_over() || lent < kept) kept = lent;
+      if (lent <= kept) break;
       std::this_thread::sleep_for(kBetweenLooks);
+      for (const auto& port : engine_->ports) port->pull();
+      engine_->finish_some();
+    }
   }
 
   Buffer receive(int from_or_any, Tag tag_or_any) override {

@@ -46,6 +46,7 @@ struct Engine {
   // In the order of the calls.
   std::deque<Transfer> unfinished;
   std::size_t next_sweep = 64;
+  std::size_t kept_by_others = 0;  // blocks in shared memory that finish_sends waited for in vain
   // MPI communicators, `root` first, the others in the order in which they were made; all live to
   // the end.
   std::vector<std::shared_ptr<Port>> ports;

@@ -74,10 +74,10 @@ std::size_t BlockPool::lend(Block* block) {
   return static_cast<std::size_t>(reinterpret_cast<std::byte*>(block) - shared_.data());
 }
 
-bool BlockPool::lends() {
+std::size_t BlockPool::lent() {
   const std::scoped_lock lock(mutex_);
   take_back_what_was_lent();
-  return !lent_.empty();
+  return lent_.size();
 }
 
 // A block of up to twice the size is better than fresh memory.

@@ -39,8 +39,8 @@ class BlockPool {
     return block.process != 0 && block.process == process_;
   }
   std::size_t lend(Block* block);
-  // Whether another process has not given back what was lent to it.
-  bool lends();
+  // How many blocks other processes have not given back.
+  std::size_t lent();
 
  private:
   Block* take_kept(std::size_t index);

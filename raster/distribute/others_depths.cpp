@@ -51,15 +51,22 @@ OthersDepths::OthersDepths(RankContext& rank, RegionDrawing& drawing)
   pending_.emplace(rank.communicator, comm::Buffer::of(std::span<const std::int32_t>(least)),
                    comm::elementwise<std::int32_t>(
                        [](std::int32_t a, std::int32_t b) { return std::min(a, b); }));
-  rank.communicator.mark(comm::Phase::rasterize, 0);
   rank.counts.phases.redistribute += rank.communicator.seconds() - before;
 }
 
+geometry::Rect OthersDepths::in_samples(const geometry::Rect& tiles) const {
+  return geometry::intersection(
+      {tiles.x0 * kTileSize, tiles.y0 * kTileSize, tiles.x1 * kTileSize, tiles.y1 * kTileSize},
+      rank_.screen.frame());
+}
+
+geometry::Rect OthersDepths::shown() const {
+  return mine_.empty() ? geometry::Rect() : in_samples(mine_);
+}
+
 geometry::Rect OthersDepths::hide() {
-  const geometry::Rect frame = rank_.screen.frame();
-  if (!pending_) return frame;
+  if (!pending_) return rank_.screen.frame();
   const double before = rank_.communicator.seconds();
-  rank_.communicator.mark(comm::Phase::redistribute, 0);
   const comm::Buffer all = pending_->finish();
   const std::span<const std::int32_t> least = all.as<std::int32_t>();
   const auto [x0, y0, x1, y1] = [&] {
@@ -71,8 +78,7 @@ geometry::Rect OthersDepths::hide() {
   drawing_.hide_behind({least.begin(), least.end() - 4});
   rank_.communicator.mark(comm::Phase::rasterize, 0);
   rank_.counts.phases.redistribute += rank_.communicator.seconds() - before;
-  return geometry::intersection(
-      {seen.x0 * kTileSize, seen.y0 * kTileSize, seen.x1 * kTileSize, seen.y1 * kTileSize}, frame);
+  return in_samples(seen);
 }
 
 std::span<const TileJob> OthersDepths::finish_meanwhile(FinishTile finish_tile,

@@ -13,7 +13,7 @@ namespace delray::raster {
 // known in time.
 class OthersDepths {
  public:
-  // Tells the others. Collective; nobody waits.
+  // Tells the others. Collective; nobody waits. Until `hide` the phase is redistribute.
   OthersDepths(RankContext& rank, RegionDrawing& drawing);
 
   // Waits for all ranks, and has the drawing drop what is hidden. Returns the part of the screen,
@@ -22,8 +22,8 @@ class OthersDepths {
   geometry::Rect hide();
 
   bool is_pending() const { return pending_.has_value(); }
-  // Whether more than half of the screen's tiles may show something of this rank already.
-  bool shows_much() const { return 2 * mine_.area() > std::int64_t{rank_.screen.tiles()}; }
+  // The part of the screen, in samples and of whole tiles, that may show something of this rank.
+  geometry::Rect shown() const;
 
   // Until all ranks have told, before hide(): tiles that are wanted, with all that was drawn in
   // them. Returns these.
@@ -36,6 +36,8 @@ class OthersDepths {
   image::BasicImage<Colour> end_samples_meanwhile(geometry::Rect& seen);
 
  private:
+  geometry::Rect in_samples(const geometry::Rect& tiles) const;
+
   RankContext& rank_;
   RegionDrawing& drawing_;
   geometry::Rect mine_ = {};                // tiles seen

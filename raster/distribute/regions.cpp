@@ -273,6 +273,7 @@ void RegionDrawing::sample_seen() {
 }
 
 void RegionDrawing::drop_samples(parallel::FunctionRef<bool(std::uint64_t pixel)> drops) {
+  if (!samples_seen_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < scratch_.seen.size(); ++i) {
     if (drops(scratch_.seen_at[i])) continue;

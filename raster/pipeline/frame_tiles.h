@@ -16,7 +16,7 @@ struct TileJob {
   std::uint32_t first = 0, last = 0;  // into TileJobs::rects
 };
 struct TileJobs {
-  std::vector<TileJob> jobs;  // ascending by tile
+  std::vector<TileJob> jobs;  // ascending by tile, as they are made
   std::vector<geometry::Rect> rects;
   geometry::Rect clip;  // around all of them
 

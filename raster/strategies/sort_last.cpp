@@ -224,8 +224,7 @@ class Steps final : public FrameSteps {
                    ->make(others_->end_samples_meanwhile<Colour>(seen_));
     } else {
       // The part is copied in the end.
-      is_part_ =
-          2 * seen_.area() <= rank_.screen.frame().area() && rank_.options.supersampling == 1;
+      is_part_ = !is_much(seen_);
       layer_ = composite::find_codec(rank_.options.codec)
                    ->make(is_part_ ? rank_.end_part<Colour>(*drawing_, seen_)
                                    : rank_.end_samples<Colour>(*drawing_));
@@ -288,10 +287,14 @@ class Steps final : public FrameSteps {
       return shading::texture_sets(rank_.prepared.shader(), material) > 1;
     });
   }
+  // Whether images are of the whole frame if anything outside of these samples is clear.
+  bool is_much(const geometry::Rect& samples) const {
+    return rank_.options.supersampling > 1 || 2 * samples.area() > rank_.screen.frame().area();
+  }
   // Whether this rank need not wait until it knows what others hide: its image will be of the whole
-  // frame, and what they hide can be taken out of it.
+  // frame, as it shows much alone, and what they hide can be taken out of it.
   bool finishes_early() const {
-    return others_ && others_->is_pending() && others_->shows_much() && !has_tiles() &&
+    return others_ && others_->is_pending() && is_much(others_->shown()) && !has_tiles() &&
            !rank_.options.count_only && packed_ == nullptr && rank_.options.supersampling == 1;
   }
   bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }

@@ -242,6 +242,33 @@ TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
   }
 }
 
+// More than half of the tiles, but of the last row, which is cut, and so less than half of the
+// pixels; and a rank that draws little of that, or nothing.
+TEST(SortLast, RanksAgreeOnThePartOfTheFrameThatShows) {
+  scenes::Scene scene = wall();
+  glm::mat4x3 low(1.0F), little(0.2F), behind_the_camera(1.0F);
+  low[0].x = 1.7F, low[1].y = 0.575F, low[3] = {-0.2F, -0.475F, 0};
+  little[3] = {-0.2F, -0.475F, 0.1F};
+  behind_the_camera[3].z = 10;
+  RenderOptions options;
+  options.width = 1280;
+  options.height = 720;
+  for (const glm::mat4x3& other : {little, behind_the_camera}) {
+    scene.instances = {{0, low}, {0, other}};
+    Picture pictures[2];
+    for (const int ranks : {1, 2}) {
+      comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+        Renderer renderer(scene);
+        for (int frame = 0; frame < 3; ++frame) {
+          Result result = renderer.render(communicator, camera_before_wall(), options);
+          if (communicator.rank() == 0) pictures[ranks - 1] = std::move(result.picture);
+        }
+      });
+    }
+    EXPECT_TRUE(same_bytes(pictures[0], pictures[1]));
+  }
+}
+
 // Tells a rank that polls for a message nothing until it waits, or waits at once.
 class Telling final : public comm::ForwardingCommunicator {
  public:
