@@ -313,9 +313,13 @@ TEST(SortLast, FramesAreTheSameWhenOthersAreLate) {
             counts[at_once].insert(counts[at_once].end(), {rank.shaded, rank.bytes_sent});
         }
       });
-      for (const std::vector<comm::Event>& of_rank : events)
-        for (const comm::Event& event : of_rank)
-          if (event.kind == comm::Event::Kind::send) counts[at_once].push_back(event.amount);
+      for (const std::vector<comm::Event>& of_rank : events) {
+        for (const comm::Event& event : of_rank) {
+          if (event.kind != comm::Event::Kind::send) continue;
+          counts[at_once].push_back(event.amount);
+          counts[at_once].push_back(static_cast<std::uint64_t>(event.phase));
+        }
+      }
     }
     EXPECT_EQ(counts[0], counts[1]) << ranks;
     for (std::size_t frame = 0; frame < pictures[0].size(); ++frame)
