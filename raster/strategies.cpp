@@ -16,12 +16,14 @@ constexpr std::array kStrategies = {
         .render = sort_last,
         .steps = sort_last_steps,
         .composites = true,
+        .costs = true,
         .packs = true,
         .parts = true},
     Strategy{.name = "sort-first",
              .description = "primitives go to the ranks whose regions of the screen they touch, "
                             "before they are drawn",
              .render = sort_first,
+             .costs = true,
              .partitions = true,
              .travels = true,
              .schedules = true,
@@ -31,6 +33,7 @@ constexpr std::array kStrategies = {
              .description = "triangles go to the ranks whose regions of the screen they touch, "
                             "once transformed",
              .render = sort_middle,
+             .costs = true,
              .partitions = true,
              .groups = true,
              .displays = true,
@@ -39,6 +42,7 @@ constexpr std::array kStrategies = {
         .name = "hybrid",
         .description = "each primitive is drawn by one rank; pixels go to the ranks that own them",
         .render = hybrid,
+        .costs = true,
         .partitions = true,
         .travels = true},
 };

@@ -33,7 +33,8 @@ struct Strategy {
   std::unique_ptr<FrameSteps> (*steps)(RankContext& rank) = nullptr;
   // Which of RenderOptions it looks at:
   bool composites = false;  // scheme, codec, blend; Shade::composited
-  bool partitions = false;  // partition, costs, regions_per_rank, keep_factor
+  bool costs = false;       // costs
+  bool partitions = false;  // partition, regions_per_rank, keep_factor
   bool travels = false;     // travel
   bool schedules = false;   // schedule, block, master_works
   bool groups = false;      // groups, geometry_ranks, redistribution

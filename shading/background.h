@@ -7,6 +7,7 @@
 
 namespace delray::shading {
 
+// What is shown where pixels are not, or partly, covered.
 struct Background {
   enum class Kind {
     automatic,    // environment where the scene brings one, otherwise studio

@@ -31,6 +31,9 @@ std::string why_no_partition(const RenderRequest& r) {
 std::string why_no_costs(const RenderRequest& r) {
   return r.sharing.partition.empty() ? "no --partition" : "";
 }
+std::string why_no_measured_costs(const RenderRequest& r) {
+  return is_raster(r) && !strategy_of(r).partitions ? "" : why_no_costs(r);
+}
 std::string why_no_block(const RenderRequest& r) {
   return r.sharing.schedule.empty() ? "no --schedule" : "";
 }
@@ -208,10 +211,10 @@ std::vector<RenderOption> rasterizer_options() {
       RenderOption::choice<bool>(
           "--costs", [](auto& r) -> auto& { return r.sharing.measured_costs; },
           {{"model", false}, {"measured", true}}, group::kSharing,
-          "Costs that partitions balance: model, an estimate (default), or measured, times of the "
-          "last frame")
-          .unless(unless_strategy(&Strategy::partitions, why_no_costs))
-          .reported("costs", ray_tracer_or_strategy_that(&Strategy::partitions)),
+          "Costs that partitions balance, and shares of --strategy sort-last: model, an estimate "
+          "(default), or measured, times of the last frame")
+          .unless(unless_strategy(&Strategy::costs, why_no_measured_costs))
+          .reported("costs", ray_tracer_or_strategy_that(&Strategy::costs)),
       RenderOption::of(
           "--regions", [](auto& r) -> auto& { return r.sharing.regions_per_rank; }, group::kSharing,
           "Regions of the screen per rank (default: 1)")
