@@ -9,8 +9,8 @@ bool Buffer::is_pooled([[maybe_unused]] std::size_t size) {
 #ifdef DELRAY_ASAN
   return false;  // it could not tell when memory is used that was given back
 #else
-  constexpr std::size_t kSmallestPooled = std::size_t{1}
-                                          << 12;  // what is smaller MPI copies at once
+  // MPI copies at once what is smaller.
+  constexpr std::size_t kSmallestPooled = std::size_t{1} << 12;
   return size >= kSmallestPooled;
 #endif
 }

@@ -66,6 +66,10 @@ using Combine = std::function<void(Buffer& lower, Buffer& upper)>;
 // The untyped forms of what follows. Root's result is in the returned buffer; that of other ranks
 // is unspecified.
 Buffer reduce_buffers(Communicator& communicator, int root, Buffer&& mine, const Combine& combine);
+Buffer all_reduce_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine);
+// Rank 0 gets an empty buffer, rank k what ranks 0 to k - 1 combine to.
+Buffer exclusive_scan_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine);
+
 // An all_reduce during which a rank turns to other things. REQUIRES: it is finished before the
 // rank calls another all_reduce; the communicator outlives it.
 class AllReduce {
@@ -87,9 +91,6 @@ class AllReduce {
   int partner_ = -1;  // whose message comes next; -1: none
   int step_ = 0;      // of the round at hand; 0: others are folded in first
 };
-Buffer all_reduce_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine);
-// Rank 0 gets an empty buffer, rank k what ranks 0 to k - 1 combine to.
-Buffer exclusive_scan_buffers(Communicator& communicator, Buffer&& mine, const Combine& combine);
 
 // `op(lower, upper)` on each element.
 template <class T, class Op>

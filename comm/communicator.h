@@ -99,8 +99,8 @@ class Communicator {
   // Returns once nothing that this rank has sent needs it any more: it may turn to other things for
   // long, and nobody waits for it. Takes in what arrives meanwhile. Where processes of a machine
   // outnumber its cores also, for 50 ms at most, once they have taken what lies in memory that they
-  // share. REQUIRES: each rank that has
-  // not received all of it yet is in a call of the communicator, or comes to one by itself.
+  // share. REQUIRES: each rank that has not received all of it yet is in a call of the
+  // communicator, or comes to one by itself.
   virtual void finish_sends() {}
   // Waits for a message and takes it; first in, first out per source and tag.
   virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;

@@ -15,7 +15,7 @@ namespace {
 class Kept {
  public:
   void keep(comm::Buffer&& message) {
-    constexpr std::size_t kMost = std::size_t{1} << 26;  // bytes
+    constexpr std::size_t kMost = std::size_t{1} << 24;  // bytes; what is more goes back at once
     if (bytes_ + message.size() > kMost) return;
     bytes_ += message.size();
     messages_.push_back(std::move(message));

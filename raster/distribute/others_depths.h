@@ -31,7 +31,8 @@ class OthersDepths {
                                             parallel::FunctionRef<bool(int tile)> wanted);
   // hide(), and RankContext::end_samples until all ranks have told and after it: the same image and
   // counts as if it had waited. Before it come tiles of which others hid nothing in the frame
-  // before, for they are not likely to now. `seen` becomes what hide returns.
+  // before, for they are not likely to now. `seen` becomes what hide returns. REQUIRES:
+  // is_pending(); one sample per pixel; a list that stays in memory.
   template <class Colour>
   image::BasicImage<Colour> end_samples_meanwhile(geometry::Rect& seen);
 

@@ -287,7 +287,8 @@ class Steps final : public FrameSteps {
       return shading::texture_sets(rank_.prepared.shader(), material) > 1;
     });
   }
-  // Whether images are of the whole frame if anything outside of these samples is clear.
+  // Whether images are of the whole frame, and of no part of it, where no more than these samples
+  // show anything.
   bool is_much(const geometry::Rect& samples) const {
     return rank_.options.supersampling > 1 || 2 * samples.area() > rank_.screen.frame().area();
   }
