@@ -160,10 +160,11 @@ class Server::Listener {
     return fmt::format("http://{}:{}/?token={}", host, port(), token_);
   }
 
-  // Calls f(connection) in the server's thread, where the page is there.
+  // Calls f(connection) in the server's thread, where the page is there; what was asked for first
+  // first, whichever threads asked.
   template <class F>
   void with(PageId page, F&& f) {
-    asio::post(context_, [this, page, f = std::forward<F>(f)]() mutable {
+    asio::post(in_order_, [this, page, f = std::forward<F>(f)]() mutable {
       const auto found = connections_.find(page);
       if (found != connections_.end()) f(*found->second);
     });
@@ -213,6 +214,8 @@ class Server::Listener {
   std::string token_, page_;
   ServerEvents events_;
   asio::io_context context_{1};
+  // What the thread itself posts to a context comes after what others post meanwhile.
+  asio::strand<asio::io_context::executor_type> in_order_{context_.get_executor()};
   tcp::acceptor acceptor_{context_};
   asio::steady_timer retry_{context_};
   tcp::endpoint endpoint_;

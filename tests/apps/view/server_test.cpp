@@ -7,6 +7,8 @@
 #include <deque>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "apps/session.h"
 #include "apps/view/page.h"
@@ -126,6 +128,29 @@ TEST(ViewServer, LimitsMessages) {
   while ((last = noted.next()) == "x") ++taken;
   EXPECT_EQ(last, "closed 2");
   EXPECT_GE(taken, 100U);
+}
+
+TEST(ViewServer, SendsInTheOrderInWhichItIsTold) {
+  Server* server = nullptr;
+  const auto send = [&](PageId id, const char* type) {
+    server->send(id, std::string(R"({"type":")") + type + "\"}");
+  };
+  Server answering({.token = "0123456789abcdef"}, "",
+                   {[](PageId) {},
+                    [&](PageId id, std::string&&) {
+                      send(id, "of the server's thread");
+                      std::jthread([&] { send(id, "of another"); }).join();
+                      send(id, "the last");
+                    },
+                    [](PageId) {}});
+  server = &answering;
+  answering.start();
+  PageClient client(tests::parse_address(answering.url()));
+  std::vector<std::string> types;
+  client.watch([&](const nlohmann::json& message) { types.push_back(message["type"]); });
+  client.say_text("hello");
+  client.wait_for("the last");
+  EXPECT_EQ(types, std::vector<std::string>({"of the server's thread", "of another", "the last"}));
 }
 
 TEST(ViewServer, KeepsTheNewestFrame) {
