@@ -141,16 +141,12 @@ std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t materi
   state.mesh.shape = shape;
   state.mesh.levels.push_back({state.first, pages - state.first});
   if (state.options.levels && state.mesh.shape.kind != scenes::Shape::Kind::line) {
-    parallel::Progress* const progress = state.options.progress;
-    // All levels together have about as many pages as the finest one.
-    if (progress != nullptr) progress->start(pages - state.first);
     internal::build_levels({[&](std::uint32_t page) { return state.read(page); },
                             [&](std::vector<EncodedPage>&& made) {
                               state.append(made);
                               state.flush();
-                              if (progress != nullptr) progress->advance(made.size());
                             },
-                            state.scratch},
+                            state.scratch, state.options.progress},
                            state.table.pages, state.table.groups, state.mesh);
   }
   state.first = static_cast<std::uint32_t>(state.table.pages.size());

@@ -138,7 +138,7 @@ struct Phases {
 
 // Work of a rank, or of all of them, with the pages of a pack.
 struct PackCounts {
-  static constexpr std::size_t kLevels = 32;
+  static constexpr std::size_t kLevels = 64;
 
   std::uint64_t pages = 0;         // in view
   std::uint64_t pages_hidden = 0;  // left out, as they were behind what was drawn before

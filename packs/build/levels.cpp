@@ -5,16 +5,19 @@
 // Wihlidal 2021). A cut that takes, of each group, all pages or all that they were made into has no
 // cracks, since borders of groups are the same on both sides.
 //
-// A group's error is measured against the finest level, or another that is kReferenceLevels finer
-// at most: errors of one level after the other rarely add up, and sums of them would make coarser
-// levels seem far worse than they are. Pages know the triangles that they stand for there. Errors
-// of these come on top, triangle by triangle: by the triangle inequality no less than the distance
-// to the finest level. A group's error is no less than that of any group below, and bounds hold
-// those below them, so errors on the screen ascend from level to level wherever the eye is. Errors
-// of triangles are kept as a byte each, rounded up, of levels that others are measured against.
+// A group's error is measured against the finest level, or another that has 8 times its triangles,
+// or 256 times its points, at most: errors of one level after the other rarely add up, and sums of
+// them would make coarser levels seem far worse than they are. Pages know the triangles that they
+// stand for there. Errors of these come on top, triangle by triangle: by the triangle inequality no
+// less than the distance to the finest level. A group's error is no less than that of any group
+// below, and bounds hold those below them, so errors on the screen ascend from level to level
+// wherever the eye is. Errors of triangles are kept as a byte each, rounded up, of levels that
+// others are measured against.
 //
 // Points have no borders that need be the same: of them some are left out (thin_points.h), and
-// pages are full.
+// pages are full. Their cells are nested, so that bounds and errors of groups, which have those of
+// all below them, do not reach beyond their own points: with cells cut elsewhere on every level
+// three tenths more are drawn for a bound of error.
 //
 // A group of which hardly anything can be left out goes on to the next level all the same, a few
 // times, as its pages have other borders there: left behind, it would lock those of their
@@ -39,14 +42,19 @@ namespace delray::packs::internal {
 namespace {
 
 constexpr double kWorthIt = 0.85;  // of the triangles may be left at most
-constexpr int kMostLevels = 30;
+constexpr int kMostLevels = 60;
 constexpr std::uint8_t kMostFailures = 3;  // levels in turn on which a page hardly gets smaller
 constexpr std::size_t kGroupsPerThread = 4;
-constexpr double kGroupTriangles =
-    static_cast<double>(kGroupPages) * kPageClusters * kClusterTriangles;
-// A level is measured against one so much finer at most. More take longer, as a level is then
-// measured against 2^(n - 1) times its triangles.
-constexpr int kReferenceLevels = 3, kPointReferenceLevels = 6;
+// Of points, by a level: half first, as fine levels are most of the file, then the root of a half,
+// so that a seventh fewer are drawn for a bound of error.
+constexpr int kHalvedPointLevels = 2;
+constexpr double kKeptPoints = 0.70710678;
+constexpr double kPageTriangles = kPageClusters * kClusterTriangles;
+constexpr double kGroupTriangles = static_cast<double>(kGroupPages) * kPageTriangles;
+// A level is measured against one of which so much is left at least. Less takes longer and more
+// memory (90 MB a thread for points), as a level is then measured against so many times its
+// triangles; but errors double on the level after a reference, as those of that come on top.
+constexpr double kReferencePart = 1.0 / 8, kPointReferencePart = 1.0 / 256;
 // Surfaces are farther apart between the places that are measured: by less than that, as exact
 // pictures show.
 constexpr float kBetweenPlaces = 1.05F;
@@ -63,6 +71,7 @@ struct MadeGroup {
   std::vector<std::vector<std::byte>> lists;  // otherwise: what they stand for
   Group group;
   std::uint8_t failures = 0;  // levels in turn, this one included, that were not worth it
+  std::uint64_t work = 0;     // triangles that were looked at
 };
 
 // What is there when a level is made of the one before.
@@ -74,6 +83,7 @@ struct Below {
   std::span<const PageErrors> errors;      // of the pages of that; none of the finest level
   const ReferenceLists* lists;             // of the level before; null where that is the one
   const Cells& cells;                      // that pages are cut by for the next level
+  std::span<const std::uint32_t> around;   // of points: the cells of pages on the next level
   std::span<const std::uint8_t> failures;  // of the pages of the level before; none: none may fail
 
   float error_of(std::uint32_t page, std::size_t triangle) const {
@@ -137,11 +147,61 @@ std::vector<std::uint32_t> cells_of_whole(std::span<const PageRow> pages, PageRa
   return result;
 }
 
+// What is to become of a mesh, level by level.
+class Steps {
+ public:
+  explicit Steps(bool points) : points_(points) {}
+  // Starts with level 1.
+  void next() {
+    ++level_;
+    kept_ = points_ && level_ > kHalvedPointLevels ? kKeptPoints : kKept;
+    if (is_reference()) of_reference_ = 1;
+    if (fills_half_of_cells()) of_cells_ = 1;
+    of_reference_ *= kept_;
+    of_cells_ *= kept_;
+  }
+  double kept() const { return kept_; }  // of the triangles of the level before
+  // Whether the levels that follow are measured against this one.
+  bool is_reference() const {
+    return of_reference_ <= (points_ ? kPointReferencePart : kReferencePart);
+  }
+  // Of points: whether what is left fills half of the cells, which are to be twice as large.
+  bool fills_half_of_cells() const { return points_ && of_cells_ <= 0.5; }
+
+  // How many triangles of the levels that others are measured against are looked at in all.
+  static double work(double triangles, bool points) {
+    double sum = 0, reference = triangles;
+    Steps steps(points);
+    for (int level = 1; level < kMostLevels && triangles > kPageTriangles; ++level) {
+      steps.next();
+      sum += reference;
+      triangles *= steps.kept();
+      if (steps.is_reference()) reference = triangles;
+    }
+    return sum;
+  }
+
+ private:
+  bool points_;
+  int level_ = 0;
+  double kept_ = 1, of_reference_ = 1, of_cells_ = 1;
+};
+
+// How many of so many points are to stay: about as many as is said, and such that they fill pages,
+// where that is near.
+std::size_t points_to_keep(std::size_t points, double kept) {
+  constexpr double kNear = 1.0 / 8, kMost = 0.8;
+  const double all = static_cast<double>(points), wanted = kept * all;
+  const double full = std::round(wanted / kPageTriangles) * kPageTriangles;
+  const bool is_near = std::abs(full - wanted) <= kNear * wanted && full <= kMost * all;
+  return static_cast<std::size_t>(is_near ? full : wanted + 1);
+}
+
 // Makes the groups of one level.
 class LevelMaker {
  public:
-  LevelMaker(const LevelBuilder& builder, const Below& below, bool is_reference)
-      : builder_(builder), below_(below), is_reference_(is_reference) {}
+  LevelMaker(const LevelBuilder& builder, const Below& below, const Steps& steps)
+      : builder_(builder), below_(below), steps_(steps) {}
 
   MadeGroup make(std::span<const std::uint32_t> members) const {
     std::vector<Page> pages;
@@ -151,9 +211,11 @@ class LevelMaker {
     MadeGroup made;
     if (!mesh.has_triangles()) {
       const ReferenceSurface all = surface_below(members, pages, scenes::Mesh(mesh));
-      const auto most =
-          static_cast<std::size_t>(kKept * static_cast<double>(mesh.triangles.size())) + 1;
-      ThinnedPoints thinned = thin_points({all.mesh, below_.errors_of(all.triangles), {}}, most);
+      made.work = all.triangles.size();
+      const std::size_t most = points_to_keep(mesh.triangles.size(), steps_.kept());
+      const float before = bounds_of(members, below_.pages, below_.groups).error;
+      ThinnedPoints thinned = thin_points({all.mesh, below_.errors_of(all.triangles), {}}, most,
+                                          before / static_cast<float>(std::sqrt(steps_.kept())));
       if (is_worth_it(mesh.triangles.size(), thinned.mesh.triangles.size()))
         finish(members, thinned.mesh, all, thinned.errors, made);
       return made;
@@ -167,6 +229,7 @@ class LevelMaker {
     }
     const float scale = attribute_scale(mesh);
     const ReferenceSurface surface = surface_below(members, pages, std::move(mesh));
+    made.work = surface.triangles.size();
     SurfaceErrors errors = surface_errors(
         {surface.mesh, below_.errors_of(surface.triangles), surface.measured}, simplified, scale);
     errors.largest *= kBetweenPlaces;
@@ -196,8 +259,9 @@ class LevelMaker {
       for (const Page& page : cut_pages(mesh, end, run.end)) {
         const std::size_t triangles = page.mesh.triangles.size();
         made.pages.push_back(encode_page(page, {}));
-        made.cells.push_back(run.cell);
-        if (is_reference_) {
+        made.cells.push_back(below_.around.empty() ? run.cell
+                                                   : below_.around[members[0] - below_.first]);
+        if (steps_.is_reference()) {
           made.errors.push_back(
               in_steps(std::span(errors.triangles).subspan(end, triangles), made.group.error));
         }
@@ -205,14 +269,14 @@ class LevelMaker {
         ends.push_back(end);
       }
     }
-    if (is_reference_) return;
+    if (steps_.is_reference()) return;
     for (const std::vector<Reference>& list : share_out(surface, errors, ends))
       made.lists.push_back(encode(list));
   }
 
   const LevelBuilder& builder_;
   const Below& below_;
-  const bool is_reference_;  // whether the next level is measured against this one
+  const Steps& steps_;
 };
 
 // What the next level needs of the one before.
@@ -231,11 +295,15 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
                   std::vector<Group>& groups, MeshRow& mesh) {
   const std::size_t wave = kGroupsPerThread * static_cast<std::size_t>(parallel::arena_threads());
   const bool points = mesh.shape.kind != scenes::Shape::Kind::triangle;
-  const int interval = points ? kPointReferenceLevels : kReferenceLevels;
   LastLevel last;
   last.first_reference = mesh.levels.front().first;
   for (const PageRow& row : rows_of(pages, mesh.levels.front())) last.triangles += row.triangles;
-  last.cells = cells_of_whole(pages, mesh.levels.front(), 1);
+  parallel::Progress* const progress = builder.progress;
+  if (progress != nullptr)
+    progress->start(static_cast<std::uint64_t>(Steps::work(last.triangles, points)));
+  last.cells = points ? nested_cells(pages, mesh.levels.front())
+                      : cells_of_whole(pages, mesh.levels.front(), 1);
+  Steps steps(points);
   double left = kKept;  // of the triangles, by a level
   Cells cells;          // one: points have no borders
   for (int level = 1; level < kMostLevels && mesh.levels.back().count > 1; ++level) {
@@ -243,9 +311,12 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
         page_groups(mesh.levels.back().first, last.cells);
     if (!points) cells = Cells(pages, mesh.levels.back(), kGroupTriangles / left, level + 1);
     const bool has_neighbours = members.size() > 1;
-    const bool is_reference = level % interval == 0;
+    steps.next();
+    std::vector<std::uint32_t> around = points ? last.cells : std::vector<std::uint32_t>();
+    if (steps.fills_half_of_cells())
+      for (std::uint32_t& cell : around) cell /= 2;
     LastLevel next;
-    if (!is_reference) next.lists = std::make_unique<ReferenceLists>(builder.scratch);
+    if (!steps.is_reference()) next.lists = std::make_unique<ReferenceLists>(builder.scratch);
     PageRange range{static_cast<std::uint32_t>(pages.size()), 0};
     std::uint32_t first = 0;
     std::vector<MadeGroup> made(std::min(wave, members.size()));
@@ -258,12 +329,14 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
                         last.errors,
                         last.lists.get(),
                         cells,
+                        around,
                         has_neighbours ? std::span<const std::uint8_t>(last.failures)
                                        : std::span<const std::uint8_t>{}};
-      const LevelMaker maker(builder, below, is_reference);
+      const LevelMaker maker(builder, below, steps);
       parallel::parallel_for(0, count, 1,
                              [&](std::size_t i) { made[i] = maker.make(members[begin + i]); });
       for (std::size_t i = 0; i < count; ++i) {
+        if (progress != nullptr) progress->advance(made[i].work);
         if (made[i].pages.empty()) continue;
         const auto number = static_cast<std::uint32_t>(groups.size());
         groups.push_back(made[i].group);
@@ -285,10 +358,9 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
     range.count = static_cast<std::uint32_t>(pages.size()) - range.first;
     if (range.count == 0) return;
     mesh.levels.push_back(range);
-    if (points) next.cells = cells_of_whole(pages, range, level + 1);
     next.triangles = first;
     left = std::min(next.triangles / last.triangles, 1.0);
-    if (is_reference) {
+    if (steps.is_reference()) {
       next.first_reference = range.first;
     } else {
       next.first_reference = last.first_reference;

@@ -7,6 +7,7 @@
 
 #include "packs/build/encoded_page.h"
 #include "packs/page.h"
+#include "parallel/progress.h"
 
 namespace delray::packs::internal {
 
@@ -17,6 +18,7 @@ struct LevelBuilder {
   std::function<void(std::vector<EncodedPage>&& pages)> append;
   // Of a file without a name: two to four bytes for each triangle of the finest level.
   std::filesystem::path scratch;
+  parallel::Progress* progress = nullptr;  // counts triangles that others are measured against
 };
 
 // Simplifies the finest level of the mesh, and what becomes of it, level by level, as long as that

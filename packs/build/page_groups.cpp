@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 namespace delray::packs::internal {
 
@@ -78,6 +79,23 @@ std::uint32_t Cells::cell_of(const glm::vec3& place) const {
 
 namespace {
 
+// Brings pages into order across the longest side of the box around their centres; returns how many
+// are in the first half.
+std::size_t cut_in_half(std::span<const PageRow> rows, std::span<std::uint32_t> pages) {
+  const std::size_t half = pages.size() / 2;
+  geometry::Box3 centres;
+  for (const std::uint32_t page : pages) centres.include(rows[page].box.centre());
+  if (centres.empty()) return half;
+  const glm::vec3 size = centres.size();
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const auto key = [&](std::uint32_t page) {
+    return std::pair(rows[page].box.centre()[axis], page);
+  };
+  std::nth_element(pages.begin(), pages.begin() + static_cast<std::ptrdiff_t>(half), pages.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  return half;
+}
+
 // Cells that have few of the triangles leave them to the one that has most, in place of pages that
 // are nearly empty and narrow strips between borders.
 void give_small_shares(std::span<std::uint32_t> cell_of_triangle) {
@@ -126,6 +144,29 @@ std::vector<CellRun> order_by_cell(const Cells& cells, scenes::Mesh& mesh, Surfa
     if (nearest != scenes::kNone) nearest = number[nearest];
   for (auto& [simplified, fine] : errors.beneath) simplified = number[simplified];
   return runs;
+}
+
+std::vector<std::uint32_t> nested_cells(std::span<const PageRow> rows, PageRange pages) {
+  std::vector<std::uint32_t> order(pages.count), cells(pages.count);
+  std::iota(order.begin(), order.end(), pages.first);
+  // In halves as long as there are more than half as many pages again as a group should have, as
+  // both halves of those would have fewer than they should by as much.
+  std::vector<std::size_t> ends{order.size()};
+  while (order.size() * 2 > ends.size() * kGroupPages * 3) {
+    std::vector<std::size_t> halves;
+    std::size_t begin = 0;
+    for (const std::size_t end : ends) {
+      const auto part = std::span(order).subspan(begin, end - begin);
+      halves.push_back(begin + cut_in_half(rows, part));
+      halves.push_back(end);
+      begin = end;
+    }
+    ends = std::move(halves);
+  }
+  std::size_t begin = 0;
+  for (std::uint32_t cell = 0; cell < ends.size(); begin = ends[cell++])
+    for (std::size_t i = begin; i < ends[cell]; ++i) cells[order[i] - pages.first] = cell;
+  return cells;
 }
 
 std::vector<std::vector<std::uint32_t>> page_groups(std::uint32_t first,

@@ -52,6 +52,12 @@ std::vector<CellRun> order_by_cell(const Cells& cells, scenes::Mesh& mesh, Surfa
 // (of pages that were less full the fewer these are).
 inline constexpr std::size_t kGroupPages = 4;
 
+// Cells that are halves of larger ones: of each page its cell, of kGroupPages about, numbered so
+// that cells 2 i and 2 i + 1 are the halves of one, and so on. Nested cells suit what has no
+// borders that have to be cut elsewhere on the next level: a group is where those are that it was
+// made of. O(pages log pages).
+std::vector<std::uint32_t> nested_cells(std::span<const PageRow> rows, PageRange pages);
+
 // Pages with the same cell, of pages `first` on, in groups, each in ascending order and of
 // 2 kGroupPages at most.
 std::vector<std::vector<std::uint32_t>> page_groups(std::uint32_t first,

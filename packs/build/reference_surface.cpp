@@ -99,6 +99,17 @@ std::vector<std::vector<Reference>> share_out(const ReferenceSurface& surface,
                                               const SurfaceErrors& errors,
                                               std::span<const std::uint32_t> ends) {
   std::vector<std::vector<Reference>> shares(ends.size());
+  const auto run_of = [&](std::uint32_t simplified) {
+    return static_cast<std::uint32_t>(std::ranges::upper_bound(ends, simplified) - ends.begin());
+  };
+  if (!surface.mesh.has_triangles()) {  // one vertex each, which others do not have: in order
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+      const std::uint32_t nearest = errors.nearest[surface.mesh.triangles[t].x];
+      const Reference& whole = surface.triangles[t];
+      shares[run_of(nearest)].push_back({whole.page, whole.triangle, kAllCorners});
+    }
+    return shares;
+  }
   VertexRuns runs_of_vertex;
   const auto give = [&](std::uint32_t run, std::uint32_t triangle, unsigned corners) {
     const Reference& whole = surface.triangles[triangle];
@@ -106,8 +117,7 @@ std::vector<std::vector<Reference>> share_out(const ReferenceSurface& surface,
   };
   const auto give_to_whose = [&](std::uint32_t simplified, std::uint32_t triangle,
                                  unsigned corners) {
-    const auto run =
-        static_cast<std::uint32_t>(std::ranges::upper_bound(ends, simplified) - ends.begin());
+    const std::uint32_t run = run_of(simplified);
     give(run, triangle, corners);
     for (int k = 0; k < 3; ++k)
       runs_of_vertex.emplace_back(surface.mesh.triangles[triangle][k], run);

@@ -1,6 +1,6 @@
 // Quadric edge collapses by meshoptimizer (after Garland and Heckbert 1997), with the border
 // locked; the error is measured afterwards (surface_error.h), since theirs is no bound. Triangles
-// are then ordered along a Morton curve, so that pages of consecutive ones are compact.
+// are then ordered along a Hilbert curve, so that pages of consecutive ones are compact.
 #include "packs/build/simplify.h"
 
 #include <meshoptimizer.h>
@@ -89,9 +89,9 @@ scenes::Mesh simplify(const scenes::Mesh& mesh) {
   }
   std::vector<glm::vec3> middles;
   for (std::size_t i = 0; i + 2 < kept.size(); i += 3) {
-    middles.push_back((result.positions[kept[i]] + result.positions[kept[i + 1]] +
-                       result.positions[kept[i + 2]]) *
-                      (1.0F / 3.0F));
+    constexpr float kThird = 1.0F / 3.0F;
+    middles.push_back(result.positions[kept[i]] * kThird + result.positions[kept[i + 1]] * kThird +
+                      result.positions[kept[i + 2]] * kThird);
   }
   for (const std::uint32_t t : order_along_curve(middles))
     result.triangles.emplace_back(kept[3 * t], kept[3 * t + 1], kept[3 * t + 2]);

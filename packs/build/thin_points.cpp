@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "packs/build/vertices.h"
 
@@ -127,10 +128,11 @@ class Thinning {
     for (std::uint32_t i = 0; i < n; ++i) box_.include(place(i));
     const glm::vec3 size = box_.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    triangle_.resize(n);
-    std::iota(triangle_.begin(), triangle_.end(), 0U);
-    std::ranges::stable_sort(triangle_, {}, [&](std::uint32_t i) { return place(i)[axis]; });
-    for (const std::uint32_t i : triangle_) {
+    std::vector<std::pair<float, std::uint32_t>> order(n);
+    for (std::uint32_t i = 0; i < n; ++i) order[i] = {place(i)[axis], i};
+    std::sort(order.begin(), order.end());
+    for (const auto& [coordinate, i] : order) {
+      triangle_.push_back(i);
       places_.push_back(place(i));
       before_.push_back(fine.before.empty() ? 0.0F : fine.before[i]);
     }
@@ -142,21 +144,27 @@ class Thinning {
   // before, unless that alone is more.
   Chosen choose(float radius) const {
     Chosen chosen;
-    Grid left(places_, box_.low, radius);
+    std::vector<glm::vec3> some_places;
+    for (std::size_t i = 0; i < places_.size(); i += stride_) some_places.push_back(places_[i]);
+    Grid left(places_, box_.low, radius), some_left(some_places, box_.low, radius);
+    const auto set_reach = [&](std::uint32_t i, float squared) {
+      left.set_reach(i, squared);
+      if (i % stride_ == 0) some_left.set_reach(i / stride_, squared);
+    };
     for (std::uint32_t i = 0; i < places_.size(); ++i) {
       const float reach = radius - before_[i];
-      left.set_reach(i, reach >= 0 ? reach * reach : -1);
+      set_reach(i, reach >= 0 ? reach * reach : -1);
     }
     std::vector<std::uint32_t> ahead;
     chosen.whose.assign(places_.size(), scenes::kNone);
     for (std::uint32_t i = 0; i < places_.size(); ++i) {
       if (chosen.whose[i] != scenes::kNone) continue;
-      const std::uint32_t best = best_ahead(left, i, radius, ahead);
+      const std::uint32_t best = best_ahead(some_left, i, radius, ahead);
       const auto number = static_cast<std::uint32_t>(chosen.points.size());
       chosen.points.push_back(best);
       const auto give = [&](std::uint32_t j) {
         chosen.whose[j] = number;
-        left.set_reach(j, -1);
+        set_reach(j, -1);
       };
       left.for_each_near(places_[best], [&](std::uint32_t j, float squared) {
         const float reach = radius - before_[j];
@@ -165,7 +173,6 @@ class Thinning {
       give(i);
       give(best);
     }
-    find_nearer(radius, chosen);
     return chosen;
   }
   // One that all count for.
@@ -177,53 +184,62 @@ class Thinning {
 
   // The least radius that leaves so many points, about: between one that leaves too many and one
   // that does not, where it would be if their number fell with its square.
-  Chosen choose_about(std::size_t most) const {
-    constexpr int kTries = 6;
+  Chosen choose_about(std::size_t most, float expected) {
+    constexpr std::size_t kInBall = 32;  // of the points that tell, on the average
+    stride_ = static_cast<std::uint32_t>(std::max<std::size_t>(1, places_.size() / most / kInBall));
+    constexpr int kTries = 7;
     constexpr float kGrowth = 2, kWanted = 0.97F, kEnough = 0.94F, kCover = 0.5F;
     const float diagonal = glm::length(box_.size());
     const auto wanted = static_cast<float>(most);
     // Of less than what rounding does to places nothing can be told.
     const float least = 16 * std::numeric_limits<float>::epsilon() * diagonal;
-    float low = 0, high = std::max(least, kCover * diagonal / std::sqrt(wanted));
-    if (!std::isnormal(high) || !std::isnormal(1 / high)) return choose_one();
-    Chosen best = choose(high);
-    while (best.points.size() > most && high < diagonal * kGrowth) {
-      low = high;
-      high *= kGrowth;
-      best = choose(high);
-    }
-    float count = static_cast<float>(best.points.size()), radius = high;
-    for (int i = 0; i < kTries && (count > wanted || count < kEnough * wanted); ++i) {
-      radius *= std::sqrt(count / (kWanted * wanted));
-      if (!(radius > low && radius < high)) radius = low > 0 ? std::sqrt(low * high) : high * 0.5F;
-      if (!(radius > least && std::isnormal(1 / radius))) break;
+    const float start = std::max(least, kCover * diagonal / std::sqrt(wanted));
+    float radius = expected > least ? expected : start;
+    float low = 0, high = std::numeric_limits<float>::infinity();
+    Chosen best;
+    for (int i = 0; i < kTries || std::isinf(high); ++i) {
+      if (!std::isnormal(radius) || !std::isnormal(1 / radius)) break;
       Chosen tried = choose(radius);
-      count = static_cast<float>(tried.points.size());
+      const auto count = static_cast<float>(tried.points.size());
       if (tried.points.size() > most) {
         low = radius;
+        if (radius >= diagonal * kGrowth) break;
       } else {
         high = radius;
         best = std::move(tried);
+        if (count >= kEnough * wanted) break;
       }
+      const bool is_misled = i == 0 && (count > 2 * wanted || 2 * count < wanted);
+      radius =
+          is_misled && radius != start ? start : radius * std::sqrt(count / (kWanted * wanted));
+      if (std::isinf(high)) {
+        radius = std::max(radius, low * (i + 1 < kTries ? 1 : kGrowth));
+      } else if (!(radius > low && radius < high)) {
+        radius = low > 0 ? std::sqrt(low * high) : high * 0.5F;
+      }
+      if (!(radius > least)) break;
     }
+    if (best.points.empty()) return choose_one();
+    find_nearer(high, best);
     return best;
   }
 
  private:
-  // Of a few points whose balls have point i, none before it, the one that covers most.
-  std::uint32_t best_ahead(const Grid& left, std::uint32_t i, float radius,
+  // Of a few points whose balls have point i, none before it, the one that covers most, as far as
+  // some of the points tell.
+  std::uint32_t best_ahead(const Grid& some_left, std::uint32_t i, float radius,
                            std::vector<std::uint32_t>& ahead) const {
-    constexpr std::size_t kLookAt = 8;
+    constexpr std::size_t kLookAt = 16;
     const float reach = radius - before_[i];
     ahead.clear();
     if (reach > 0) {
-      left.for_each_near(places_[i], [&](std::uint32_t j, float squared) {
-        if (j > i && squared <= reach * reach) ahead.push_back(j);
+      some_left.for_each_near(places_[i], [&](std::uint32_t j, float squared) {
+        if (j * stride_ > i && squared <= reach * reach) ahead.push_back(j * stride_);
       });
     }
     std::uint32_t best = i, most = 0;
     const auto look_at = [&](std::uint32_t j) {
-      const std::uint32_t count = left.count(places_[j]);
+      const std::uint32_t count = some_left.count(places_[j]);
       if (count > most) most = count, best = j;
     };
     const std::size_t looks = std::min(kLookAt, ahead.size());
@@ -263,14 +279,15 @@ class Thinning {
   std::vector<std::uint32_t> triangle_;
   std::vector<glm::vec3> places_;
   std::vector<float> before_;
+  std::uint32_t stride_ = 1;  // one in so many points tells how much a ball covers
   geometry::Box3 box_;
 };
 
 }  // namespace
 
-ThinnedPoints thin_points(const FineSurface& fine, std::size_t most) {
-  const Thinning thinning(fine);
-  const Chosen chosen = thinning.choose_about(most);
+ThinnedPoints thin_points(const FineSurface& fine, std::size_t most, float expected) {
+  Thinning thinning(fine);
+  const Chosen chosen = thinning.choose_about(most, expected);
   ThinnedPoints result;
   result.mesh.shape = fine.mesh.shape;
   result.mesh.material = fine.mesh.material;

@@ -12,9 +12,10 @@ struct ThinnedPoints {
 
 // Some of the points, at most so many and about that, such that all are near to one of them: the
 // error of a point is no less than the distance of each that counts for it, with what that was
-// moved by before. Expected O(n (1 + n / most)) for points on surfaces. Deterministic.
+// moved by before. `expected`, where it is known about, is the largest of these errors and saves
+// time; 0: unknown. Expected O(n (1 + n / most)) for points on surfaces. Deterministic.
 //
 // REQUIRES: the mesh is of points, which have an error before or none has; most >= 1.
-ThinnedPoints thin_points(const FineSurface& fine, std::size_t most);
+ThinnedPoints thin_points(const FineSurface& fine, std::size_t most, float expected = 0);
 
 }  // namespace delray::packs::internal

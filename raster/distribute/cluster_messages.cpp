@@ -201,7 +201,7 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
     section.cluster.first_corner = corners;
     section.cluster.box = header.box;
     section.cluster.normals_agree = header.normals_agree != 0;
-    section.cluster.consecutive = true;
+    section.cluster.first_in_mesh = vertices;
     triangles += header.triangles;
     vertices += header.vertices;
     corners += 3 * section.cluster.corner_stride();

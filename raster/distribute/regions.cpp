@@ -42,10 +42,12 @@ PreparedFrame::PreparedFrame(const RegionTask& task)
 void PreparedFrame::add_draws(const RegionTask& task) {
   const std::vector<Draw>& draws = task.list.draws;
   for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].draw = &draws[i];
-  for (std::size_t i = draws_.size(); i < draws.size(); ++i) {
-    draws_.push_back(
-        prepare_draw(task.screen, draws[i], task.shader, task.options.cull_single_sided));
-  }
+  constexpr std::size_t kAtOnce = 256;
+  const std::size_t first = draws_.size();
+  draws_.resize(draws.size());
+  parallel::parallel_for(first, draws.size(), kAtOnce, [&](std::size_t i) {
+    draws_[i] = prepare_draw(task.screen, draws[i], task.shader, task.options.cull_single_sided);
+  });
   raster::add_draws(shading_);
 }
 

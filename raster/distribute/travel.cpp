@@ -249,6 +249,7 @@ void GeometryPacker::write_run(const Run& run, std::byte* to) const {
     cluster.count = part.triangles();
     cluster.first_vertex = next.first_vertex;
     cluster.vertices = part.vertices;
+    cluster.first_in_mesh = next.first_vertex;  // as they arrive
     cluster.first_corner = next.first_corner;
     to = put(cluster, to);
     next.first += cluster.count;

@@ -8,12 +8,14 @@
 #include "raster/packed/packed_drawing.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace delray::raster {
 namespace {
 
-constexpr std::size_t kBatchPages = 128;  // drawn at once
+// Drawn at once: the first ones, of which others are behind; and at most. Between batches threads
+// wait for each other.
+constexpr std::size_t kBatchPages = 128, kMostBatchPages = 1024;
 // For pages that nobody will ask for again: memory that was used before is in the caches, and has
 // not to be got from the system.
 constexpr std::uint64_t kPassingBytes = std::uint64_t{8} << 20;
@@ -43,14 +45,12 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
   for (const PlacedPage& page : pages_) {
     const scenes::Instance& instance = scene.instances[page.instance];
     const scenes::Mesh& mesh = scene.meshes[instance.mesh];
-    list_.draws.push_back(
-        {&mesh, &instance.transform, nullptr, nullptr, widening_of(rank, packed, mesh, page.page)});
-    const packs::PageRow& row = packed.pack.pages()[page.page];
-    list_.triangles += row.triangles;
+    list_.draws.push_back({&mesh, &instance.transform, nullptr, nullptr, page.widening});
+    list_.triangles += page.triangles;
     if (seen[page.page]) {  // of another instance
       pages_repeat_ = true;
     } else {
-      bytes += row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
+      bytes += page.bytes_in_memory;
     }
     seen[page.page] = true;
   }
@@ -82,48 +82,53 @@ void PackedDrawing::fill_clusters(std::uint32_t draw, const RasterPage& page) {
     cluster.begin = 0;
     cluster.end = static_cast<std::uint16_t>(parts[part].count);
     cluster.primitive = primitive + parts[part].first;
+    cluster.first_vertex = parts[part].vertex_of_place_0();
   }
 }
 
 void PackedDrawing::draw(RegionDrawing& drawing) {
-  std::vector<std::uint32_t> order(pages_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return pages_[a].nearest < pages_[b].nearest;
-  });
+  // Near to far.
+  std::vector<std::pair<float, std::uint32_t>> order(pages_.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {pages_[i].nearest, i};
+  std::sort(order.begin(), order.end());
   TriangleCounts& counts = rank_.counts.triangles;
   PackCounts& pack = rank_.pack;
   pack.pages += pages_.size();
-  std::vector<std::uint32_t> ahead, clusters;
+  std::vector<std::uint32_t> ahead, batch, clusters;
   packed_.cache.begin_frame();
   for (std::size_t at = 0, asked = 0; at < order.size();) {
     if (asked < at + kPagesAhead / 2) {
       ahead.clear();
       for (asked = std::max(asked, at); asked < std::min(at + kPagesAhead, order.size()); ++asked) {
-        const PlacedPage& page = pages_[order[asked]];
+        const PlacedPage& page = pages_[order[asked].second];
         if (!hides(drawing, page)) ahead.push_back(page.page);
       }
       std::ranges::sort(ahead);
       packed_.pack.will_need(packed_.cache.missing(ahead));
     }
 
-    clusters.clear();
-    for (std::size_t drawn = 0; at < order.size() && drawn < kBatchPages; ++at) {
-      const PlacedPage& page = pages_[order[at]];
-      const packs::PageRow& row = packed_.pack.pages()[page.page];
+    batch.clear();
+    const std::size_t most = std::clamp(at / 2, kBatchPages, kMostBatchPages);
+    for (; at < order.size() && batch.size() < most; ++at) {
+      const PlacedPage& page = pages_[order[at].second];
       if (hides(drawing, page)) {
-        counts.in += row.triangles;
-        counts.hidden += row.triangles;
-        counts.hidden_clusters += row.clusters;
+        counts.in += page.triangles;
+        counts.hidden += page.triangles;
+        counts.hidden_clusters += page.clusters;
         ++pack.pages_hidden;
         continue;
       }
-      ++drawn;
-      for (std::uint32_t part = 0; part < row.clusters; ++part) {
-        clusters.push_back(order[at] * packs::kPageClusters + part);
-        list_.clusters[clusters.back()].draw = order[at];
+      batch.push_back(order[at].second);
+      pack.levels[std::min<std::size_t>(page.level, PackCounts::kLevels - 1)] += page.triangles;
+    }
+    // Neighbours in the file are so on the screen, too, and in the tiles that a thread draws into.
+    std::ranges::sort(batch);
+    clusters.clear();
+    for (const std::uint32_t page : batch) {
+      for (std::uint32_t part = 0; part < pages_[page].clusters; ++part) {
+        clusters.push_back(page * packs::kPageClusters + part);
+        list_.clusters[clusters.back()].draw = page;
       }
-      pack.levels[std::min<std::size_t>(row.level, PackCounts::kLevels - 1)] += row.triangles;
     }
     pack.clusters += clusters.size();
     drawing.draw_in_order(clusters);
@@ -138,28 +143,42 @@ void PackedDrawing::need_not_keep() {
 void PackedDrawing::count() { rank_.pack.cache += packed_.cache.counts() - before_; }
 
 void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
-  std::vector<packs::PageCache::Held> pages;
-  pages.reserve(draws.size());
-  for (const std::uint32_t draw : draws) pages.push_back(packed_.cache.get(pages_[draw].page));
-  const std::lock_guard lock(mutex_);
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    const std::uint32_t draw = draws[i];
-    if (holders_[draw]++ > 0) continue;
-    const auto& made = static_cast<const RasterPage&>(*pages[i]);
-    list_.draws[draw].mesh = &made.mesh();
-    if (list_.draws[draw].clusters == nullptr) fill_clusters(draw, made);
-    // Nothing is made of what is there.
-    list_.draws[draw].clusters = const_cast<MeshClusters*>(&made.clusters());
-    held_[draw] = std::move(pages[i]);
+  std::size_t held = 0;
+  try {
+    for (; held < draws.size(); ++held) hold(draws[held]);
+  } catch (...) {
+    release(draws.first(held));
+    throw;
   }
 }
 
+void PackedDrawing::hold(std::uint32_t draw) {
+  std::unique_lock lock(mutexes_[draw % mutexes_.size()]);
+  if (holders_[draw] == 0) {
+    lock.unlock();
+    packs::PageCache::Held page = packed_.cache.get(pages_[draw].page);
+    lock.lock();
+    if (holders_[draw] == 0) fill(draw, std::move(page));
+  }
+  ++holders_[draw];
+}
+
+void PackedDrawing::fill(std::uint32_t draw, packs::PageCache::Held&& page) {
+  const auto& made = static_cast<const RasterPage&>(*page);
+  list_.draws[draw].mesh = &made.mesh();
+  if (list_.draws[draw].clusters == nullptr) fill_clusters(draw, made);
+  // Nothing is made of what is there.
+  list_.draws[draw].clusters = const_cast<MeshClusters*>(&made.clusters());
+  held_[draw] = std::move(page);
+}
+
 void PackedDrawing::release(std::span<const std::uint32_t> draws) {
-  std::vector<packs::PageCache::Held> pages;  // given back after the lock
   if (keeps_all_) return;
-  const std::lock_guard lock(mutex_);
-  for (const std::uint32_t draw : draws)
-    if (--holders_[draw] == 0) pages.push_back(std::move(held_[draw]));
+  for (const std::uint32_t draw : draws) {
+    packs::PageCache::Held page;  // given back after the lock
+    const std::lock_guard lock(mutexes_[draw % mutexes_.size()]);
+    if (--holders_[draw] == 0) page = std::move(held_[draw]);
+  }
 }
 
 }  // namespace delray::raster

@@ -1,6 +1,7 @@
 // Pages of a pack as a list that is drawn while it is read.
 #pragma once
 
+#include <array>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -34,6 +35,9 @@ class PackedDrawing final : public MeshHolder {
 
  private:
   bool hides(const RegionDrawing& drawing, const PlacedPage& page) const;
+  void hold(std::uint32_t draw);
+  // With the draw's mutex: `page` is its page, whose clusters are listed.
+  void fill(std::uint32_t draw, packs::PageCache::Held&& page);
   void fill_clusters(std::uint32_t draw, const RasterPage& page);
 
   RankContext& rank_;
@@ -43,7 +47,8 @@ class PackedDrawing final : public MeshHolder {
   DrawList list_;
   bool keeps_all_ = false;
   bool pages_repeat_ = false;  // a page may be drawn for each of several instances
-  std::mutex mutex_;
+  // Of every so many draws one.
+  std::array<std::mutex, 64> mutexes_;
   // By draw.
   std::vector<std::uint32_t> holders_;
   std::vector<packs::PageCache::Held> held_;

@@ -25,7 +25,7 @@ double RasterPage::read(const packs::PackReader& pack, std::uint32_t number) {
     block.clusters.push_back({cluster.first, cluster.count, cluster.first_vertex, cluster.vertices,
                               cluster.first_corner, cluster.box, cluster.cone.axis,
                               cluster.cone.cosine, cluster.cone.least_height, cluster.normals_agree,
-                              are_consecutive(vertices)});
+                              first_of_consecutive(vertices)});
     block.box.include(cluster.box);
   }
   const auto of = [](const auto& values) { return values.capacity() * sizeof(values[0]); };

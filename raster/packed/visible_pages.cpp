@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "parallel/parallel_for.h"
 #include "raster/packed/error_on_screen.h"
 #include "raster/pipeline/cull.h"
 
@@ -17,15 +18,15 @@ namespace {
 
 geometry::Box3 grown(const geometry::Box3& box, float by) { return {box.low - by, box.high + by}; }
 
-}  // namespace
-
+// See PlacedPage.
 float widening_of(const RankContext& rank, const PackedScene& packed, const scenes::Mesh& mesh,
-                  std::uint32_t page) {
-  const std::uint32_t group = packed.pack.pages()[page].made_of;
-  if (mesh.has_triangles() || group == packs::kNoGroup || !(rank.options.error > 0)) return 0;
-  const float error = packed.pack.groups()[group].error;
+                  const packs::PageRow& row) {
+  if (mesh.has_triangles() || row.made_of == packs::kNoGroup || !(rank.options.error > 0)) return 0;
+  const float error = packed.pack.groups()[row.made_of].error;
   return mesh.shape.in_pixels && error > 0 ? static_cast<float>(rank.options.error) : error;
 }
+
+}  // namespace
 
 std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene& packed) {
   std::vector<PlacedPage> pages;
@@ -47,46 +48,63 @@ std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene
       return !bound(rank.screen, prepared, grows ? grown(node.box, node.made_error) : node.box)
                   .outside;
     };
-    const auto look_at = [&](std::uint32_t number) {
+    const auto shows = [&](std::uint32_t number, PlacedPage& placed) {
       const packs::PageRow& row = packed.pack.pages()[number];
       if (most > 0) {
-        if (row.simplified_in != packs::kNoGroup && error.allows(groups[row.simplified_in])) return;
-        if (row.made_of != packs::kNoGroup && !error.allows(groups[row.made_of])) return;
+        if (row.simplified_in != packs::kNoGroup && error.allows(groups[row.simplified_in]))
+          return false;
+        if (row.made_of != packs::kNoGroup && !error.allows(groups[row.made_of])) return false;
       }
-      const float widening = grows ? widening_of(rank, packed, mesh, number) : 0;
+      const float widening = widening_of(rank, packed, mesh, row);
       const ClusterBounds bounds =
-          bound(rank.screen, prepared, widening > 0 ? grown(row.box, widening) : row.box);
-      if (bounds.outside) return;
+          bound(rank.screen, prepared, grows && widening > 0 ? grown(row.box, widening) : row.box);
+      if (bounds.outside) return false;
       MeshCluster all;
       all.box = row.box;
       all.axis = row.cone.axis;
       all.cosine = row.cone.cosine;
       all.least_height = row.cone.least_height;
-      if (shows_hidden_side_only(rank.screen, prepared, all, bounds)) return;
-      pages.push_back({i, number, bounds.pixels, bounds.nearest});
+      if (shows_hidden_side_only(rank.screen, prepared, all, bounds)) return false;
+      const std::uint64_t bytes =
+          row.bytes_in_memory(packed.pack.meshes()[instance.mesh].attributes);
+      placed = {i,
+                number,
+                bounds.pixels,
+                bounds.nearest,
+                widening,
+                static_cast<std::uint32_t>(bytes),
+                row.triangles,
+                row.clusters,
+                row.level};
+      return true;
     };
+    std::vector<std::uint32_t> looked_at;
     const std::vector<packs::PageTree>& levels = packed.trees[instance.mesh];
     for (std::size_t level = 0; level < (most > 0 ? levels.size() : 1); ++level)
-      levels[level].descend(visit, look_at);
+      levels[level].descend(visit, [&](std::uint32_t number) { looked_at.push_back(number); });
+    std::vector<PlacedPage> placed(looked_at.size());
+    std::vector<std::uint8_t> is_seen(looked_at.size());
+    constexpr std::size_t kGrain = 256;
+    parallel::parallel_for(0, looked_at.size(), kGrain, [&](std::size_t k) {
+      is_seen[k] = shows(looked_at[k], placed[k]) ? 1 : 0;
+    });
+    for (std::size_t k = 0; k < placed.size(); ++k)
+      if (is_seen[k] != 0) pages.push_back(placed[k]);
   }
   return pages;
 }
 
-std::vector<PlacedPage> share_of_pages(const PackedScene& packed, std::vector<PlacedPage>&& pages,
-                                       int rank, int ranks) {
+std::vector<PlacedPage> share_of_pages(std::vector<PlacedPage>&& pages, int rank, int ranks) {
   if (ranks == 1) return std::move(pages);
-  const auto triangles = [&](const PlacedPage& page) {
-    return std::uint64_t{packed.pack.pages()[page.page].triangles};
-  };
   std::uint64_t all = 0, before = 0;
-  for (const PlacedPage& page : pages) all += triangles(page);
+  for (const PlacedPage& page : pages) all += page.triangles;
   const auto begin = [&](int k) {
     return all * static_cast<std::uint64_t>(k) / static_cast<std::uint64_t>(ranks);
   };
   std::vector<PlacedPage> mine;
   for (const PlacedPage& page : pages) {
     if (begin(rank) <= before && before < begin(rank + 1)) mine.push_back(page);
-    before += triangles(page);
+    before += page.triangles;
   }
   return mine;
 }

@@ -29,7 +29,8 @@ void append_clusters(const Piece& piece, std::uint32_t draw, DrawList& list) {
         before->end = place_end;
       else
         list.clusters.push_back({draw, cluster.first, part, place, place_end,
-                                 piece.primitive - piece.first + cluster.first});
+                                 piece.primitive - piece.first + cluster.first,
+                                 cluster.vertex_of_place_0()});
       t = last;
     }
   }

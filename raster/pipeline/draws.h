@@ -47,6 +47,8 @@ struct Cluster {
   std::uint32_t part = 0;   // number of the cluster in its block
   std::uint16_t begin = 0, end = 0;
   std::uint64_t primitive = 0;  // global number of the triangle at place 0
+  // Of points: MeshCluster::vertex_of_place_0().
+  std::uint32_t first_vertex = scenes::kNone;
 };
 
 // Keeps the meshes of draws in memory while somebody looks at them, where not all are at all times.

@@ -140,7 +140,7 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
     }
     bound(mesh, *block, cluster);
     cluster.normals_agree = normals_agree(mesh, cluster);
-    cluster.consecutive = are_consecutive(block->vertices_of(cluster));
+    cluster.first_in_mesh = first_of_consecutive(block->vertices_of(cluster));
     block->box.include(cluster.box);
     block->clusters.push_back(cluster);
   }
@@ -152,7 +152,7 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
 
 }  // namespace
 
-bool are_consecutive(std::span<const std::uint32_t> vertices) {
+std::uint32_t first_of_consecutive(std::span<const std::uint32_t> vertices) {
   // A few at a time, without branches.
   constexpr std::size_t kAtOnce = 16;
   for (std::size_t first = 0; first < vertices.size(); first += kAtOnce) {
@@ -160,9 +160,9 @@ bool are_consecutive(std::span<const std::uint32_t> vertices) {
     const std::size_t end = std::min(first + kAtOnce, vertices.size());
     for (std::size_t i = first; i < end; ++i)
       differences |= vertices[i] ^ (vertices[0] + static_cast<std::uint32_t>(i));
-    if (differences != 0) return false;
+    if (differences != 0) return scenes::kNone;
   }
-  return true;
+  return vertices.empty() ? scenes::kNone : vertices[0];
 }
 
 void MeshClusters::make(const scenes::Mesh& mesh, std::uint32_t first, std::uint32_t count) {

@@ -33,8 +33,15 @@ struct MeshCluster {
   float least_height = 0;  // of all triangles: no two opposite parts of one are closer
   // normal_agrees() at every corner of every triangle; false in a mesh without normals.
   bool normals_agree = false;
-  // Vertices follow each other in the mesh as they do in the cluster.
-  bool consecutive = false;
+  // The mesh's number of its first vertex, where vertices follow each other in the mesh as they do
+  // in the cluster; otherwise scenes::kNone.
+  std::uint32_t first_in_mesh = scenes::kNone;
+
+  bool consecutive() const { return first_in_mesh != scenes::kNone; }
+  // The vertex of the point at place 0, where those of the others follow; otherwise scenes::kNone.
+  std::uint32_t vertex_of_place_0() const {
+    return vertices == count ? first_in_mesh : scenes::kNone;
+  }
 
   // From one corner's array to the next.
   std::uint32_t corner_stride() const {
@@ -53,8 +60,8 @@ inline bool normal_agrees(const scenes::Mesh& mesh, std::uint32_t corner, const 
   return glm::dot(mesh.normals[corner], edges) >= 0;
 }
 
-// Whether each is one more than the one before.
-bool are_consecutive(std::span<const std::uint32_t> vertices);
+// The first, where each is one more than the one before; otherwise, and of none, scenes::kNone.
+std::uint32_t first_of_consecutive(std::span<const std::uint32_t> vertices);
 
 // The clusters of up to kBlockTriangles consecutive triangles of a mesh, ascending.
 struct ClusterBlock {

@@ -357,12 +357,13 @@ void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetU
   radii.largest = std::numeric_limits<std::int32_t>::max();
   if (splats.is_spot() && mesh_cluster.vertices == mesh_cluster.count) {
     // A vertex at each place: primitives are numbered by vertices as these are first used.
-    const std::span<const std::uint32_t> which = block.vertices_of(mesh_cluster);
-    SpotPlaces places{mesh.positions.data(), which.data(), which.size()};
-    if (mesh_cluster.consecutive) {
-      places = {mesh.positions.data() + which[0], nullptr, which.size()};
+    SpotPlaces places{mesh.positions.data(), nullptr, mesh_cluster.count};
+    if (mesh_cluster.consecutive()) {
+      places.positions += mesh_cluster.first_in_mesh;
       transform(splats.to_view, screen, std::span(places.positions, places.count), vertices);
     } else {
+      const std::span<const std::uint32_t> which = block.vertices_of(mesh_cluster);
+      places.which = which.data();
       transform(splats.to_view, screen, mesh.positions, which, vertices);
     }
     HWY_DYNAMIC_DISPATCH(find_radii)(splats, screen, places, vertices, radii);

@@ -29,46 +29,60 @@ glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
   return squared > 0 ? v * (1.0F / std::sqrt(squared)) : otherwise;
 }
 
-// The vertex of a plain splat. Of a cluster that was looked at before, that is at hand.
-class VertexOfSplat {
+// What colours plain splats have. Of clusters that were looked at lately that is at hand: rows of
+// pixels show the same few again and again, and the way from a number to a colour is long.
+class PlainSplats {
  public:
-  explicit VertexOfSplat(const DrawList& list) : list_(list) {}
+  explicit PlainSplats(const FrameShading& frame) : frame_(frame) {
+    for (Entry& entry : entries_) entry.cluster = kNothing;
+  }
 
   struct Found {
-    const Draw* draw;
-    std::uint32_t vertex;
+    const scenes::Material* material = nullptr;
+    const glm::vec4* of_vertex = nullptr;  // null: the material's alone
+
+    image::RgbaF colour() const {
+      const glm::vec4 colour =
+          of_vertex != nullptr ? material->base_colour * *of_vertex : material->base_colour;
+      return premultiplied(glm::vec3(colour), 1);
+    }
   };
   Found of(std::uint32_t number) {
     const std::uint32_t cluster = number >> kClusterBits;
-    if (cluster != cluster_) look_at(cluster);
+    Entry& entry = entries_[cluster % kEntries];
+    if (entry.cluster != cluster) look_at(cluster, entry);
+    if (entry.colours == nullptr) return {entry.material, nullptr};
     const std::uint32_t place = number & (kClusterTriangles - 1);
-    return {draw_, consecutive_ ? first_ + place : draw_->mesh->triangles[first_ + place].x};
+    return {entry.material,
+            entry.colours + (entry.triangles == nullptr ? place : entry.triangles[place].x)};
   }
 
  private:
-  void look_at(std::uint32_t number) {
-    cluster_ = number;
-    const Cluster& cluster = list_.clusters[number];
-    draw_ = &list_.draws[cluster.draw];
-    const ClusterBlock& block = list_.block_of(cluster);
-    const MeshCluster& part = block.clusters[cluster.part];
-    consecutive_ = part.consecutive && part.vertices == part.count;
-    first_ = consecutive_ ? block.vertices[part.first_vertex] : cluster.first;
+  static constexpr std::uint32_t kEntries = 64;
+  struct Entry {
+    std::uint32_t cluster;
+    const scenes::Material* material;
+    const glm::vec4* colours;     // null: there are none; from that of place 0 on if consecutive
+    const glm::uvec3* triangles;  // from that of place 0 on; null: vertices are consecutive
+  };
+
+  void look_at(std::uint32_t number, Entry& entry) const {
+    const DrawList& list = frame_.list;
+    const Cluster& cluster = list.clusters[number];
+    const scenes::Mesh& mesh = *list.draws[cluster.draw].mesh;
+    entry = {number, &shading::material(frame_.shader, mesh.material), nullptr, nullptr};
+    if (mesh.colours.empty()) return;
+    entry.colours = mesh.colours.data();
+    if (cluster.first_vertex != scenes::kNone) {
+      entry.colours += cluster.first_vertex;
+    } else {
+      entry.triangles = mesh.triangles.data() + cluster.first;
+    }
   }
 
-  const DrawList& list_;
-  std::uint32_t cluster_ = kNothing;
-  const Draw* draw_ = nullptr;
-  std::uint32_t first_ = 0;
-  bool consecutive_ = false;
+  const FrameShading& frame_;
+  Entry entries_[kEntries];
 };
-
-image::RgbaF colour_of(const FrameShading& frame, const VertexOfSplat::Found& found) {
-  const scenes::Mesh& mesh = *found.draw->mesh;
-  glm::vec4 colour = shading::material(frame.shader, mesh.material).base_colour;
-  if (!mesh.colours.empty()) colour *= mesh.colours[found.vertex];
-  return premultiplied(glm::vec3(colour), 1);
-}
 
 }  // namespace
 
@@ -112,29 +126,28 @@ bool is_plain(const shading::Shader& shader, const Draw& draw) {
 template <class Colour>
 std::uint64_t shade_plain_splats(const FrameShading& frame, const VisibilityTile& tile,
                                  const geometry::Rect& rect, const Window<Colour>& window) {
-  VertexOfSplat vertex_of(frame.list);
+  PlainSplats splats(frame);
   std::uint64_t shown = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
     const std::int64_t* const keys = tile.key + y % kTileSize * kTileSize + rect.x0 % kTileSize;
     const std::size_t first = window.at(rect.x0, y);
-    VertexOfSplat::Found found[kTileSize];
+    PlainSplats::Found found[kTileSize];
     for (int i = 0; i < rect.width(); ++i) {
       window.depth[first + static_cast<std::size_t>(i)] = frame.shown_depth(keys[i]);
       const std::uint32_t number = number_of(keys[i]);
-      found[i].draw = nullptr;
+      found[i] = {};
       if (number == kNothing) continue;
-      found[i] = vertex_of.of(number);
-      if (!found[i].draw->mesh->colours.empty())
-        hwy::Prefetch(&found[i].draw->mesh->colours[found[i].vertex]);
+      found[i] = splats.of(number);
+      if (found[i].of_vertex != nullptr) hwy::Prefetch(found[i].of_vertex);
     }
     for (int i = 0; i < rect.width(); ++i) {
       Colour& pixel = window.colour[first + static_cast<std::size_t>(i)];
-      if (found[i].draw == nullptr) {
+      if (found[i].material == nullptr) {
         pixel = {};
         continue;
       }
       ++shown;
-      composite::store(colour_of(frame, found[i]), pixel);
+      composite::store(found[i].colour(), pixel);
     }
   }
   return shown;
@@ -146,7 +159,7 @@ void look_up_colours(const FrameShading& frame, VisibilityTile& tile, std::uint6
     std::fill(std::begin(colours.number), std::end(colours.number), kNothing);
     colours.drawing = drawing;
   }
-  VertexOfSplat vertex_of(frame.list);
+  PlainSplats splats(frame);
   for (std::uint32_t rest = std::exchange(tile.changed, 0); rest != 0; rest &= rest - 1) {
     const int block = std::countr_zero(rest);
     const int corner = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight * kTileSize +
@@ -162,7 +175,7 @@ void look_up_colours(const FrameShading& frame, VisibilityTile& tile, std::uint6
         if (number == colours.number[i]) continue;
         colours.number[i] = number;
         const bool outside = tile.key[i] == 0;  // VisibilityTile::clear
-        if (!outside) colours.colour[i] = colour_of(frame, vertex_of.of(number));
+        if (!outside) colours.colour[i] = splats.of(number).colour();
       }
     }
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "composite/fragment.h"
+#include "parallel/parallel_for.h"
 #include "raster/shading/shade_splats.h"
 #include "shading/shade.h"
 
@@ -84,14 +85,20 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
 }
 
 void add_draws(FrameShading& frame) {
-  for (std::size_t i = frame.draws.size(); i < frame.list.draws.size(); ++i) {
+  constexpr std::size_t kAtOnce = 256;
+  const std::size_t first = frame.draws.size();
+  frame.draws.resize(frame.list.draws.size());
+  parallel::parallel_for(first, frame.draws.size(), kAtOnce, [&](std::size_t i) {
     const Draw& draw = frame.list.draws[i];
-    frame.draws.push_back(make_shaded_draw(frame.screen.view, draw));
-    frame.draws.back().blended = is_blended(frame.shader, *draw.mesh);
-    frame.draws.back().splats = make_splat_draw(frame.screen, draw);
+    frame.draws[i] = make_shaded_draw(frame.screen.view, draw);
+    frame.draws[i].blended = is_blended(frame.shader, *draw.mesh);
+    frame.draws[i].splats = make_splat_draw(frame.screen, draw);
+  });
+  for (std::size_t i = first; i < frame.draws.size(); ++i) {
+    const Draw& draw = frame.list.draws[i];
     frame.all_plain &= is_plain(frame.shader, draw);
     const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
-    frame.any_blended |= frame.draws.back().blended;
+    frame.any_blended |= frame.draws[i].blended;
     frame.any_colours |= !draw.mesh->colours.empty();
     frame.any_normal_maps |= material.normal_texture != scenes::kNone;
     frame.texture_sets =

@@ -193,7 +193,7 @@ class Steps final : public FrameSteps {
     if (PackedScene* const packed = rank_.prepared.packed) {
       packed_ = std::make_unique<PackedDrawing>(
           rank_, *packed,
-          share_of_pages(*packed, visible_pages(rank_, *packed), rank_.number(), rank_.ranks()));
+          share_of_pages(visible_pages(rank_, *packed), rank_.number(), rank_.ranks()));
       drawing_.reset(new RegionDrawing(rank_.begin(packed_->list(), {&frame, 1})));
       packed_->draw(*drawing_);
       return;

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <set>
 
 #include "packs/build/simplify.h"
 #include "packs/build/surface_error.h"
+#include "packs/build/vertices.h"
 #include "packs/pack_reader.h"
 #include "packs/pack_writer.h"
 #include "scenes/generate.h"
@@ -240,6 +242,73 @@ TEST(Levels, AreMeasuredAgainstTheFinestOnes) {
     EXPECT_GE(said, measured) << level;
     EXPECT_LE(said, 1.25F * measured) << level;
   }
+}
+
+scenes::Scene points_in_a_square(int n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> place(0, 1);
+  scenes::Scene scene;
+  scenes::Mesh mesh;
+  mesh.shape.kind = scenes::Shape::Kind::point;
+  mesh.shape.in_pixels = false;
+  mesh.shape.radius = 0.001F;
+  std::vector<glm::vec3> places;
+  places.reserve(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) places.emplace_back(place(random), place(random), 0);
+  for (const std::uint32_t i : internal::order_along_curve(places)) {
+    mesh.triangles.emplace_back(mesh.positions.size());
+    mesh.positions.push_back(places[i]);
+  }
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.emplace_back();
+  scene.materials.emplace_back();
+  return scene;
+}
+
+TEST(Levels, OfPointsAreNestedAndCoverAll) {
+  const tests::TemporaryFolder folder;
+  const scenes::Scene scene = points_in_a_square(100'000, 5);
+  write_pack(folder / "a.pack", scene);
+  const PackReader pack(folder / "a.pack");
+  const std::vector<PageRange>& levels = pack.meshes()[0].levels;
+  ASSERT_GE(levels.size(), 10U);
+  std::uint64_t before = 100'000;
+  double overlapping = 0;
+  for (std::size_t level = 1; level < levels.size(); ++level) {
+    const PageRange& range = levels[level];
+    std::uint64_t points = 0;
+    double area = 0;
+    std::set<std::uint32_t> groups;
+    std::vector<glm::vec3> places;
+    float error = 0;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+      points += pack.pages()[i].triangles;
+      const Group& group = pack.groups()[pack.pages()[i].made_of];
+      error = std::max(error, group.error);
+      if (groups.insert(pack.pages()[i].made_of).second) {
+        const glm::vec3 size = group.bounds.size();
+        area += static_cast<double>(size.x) * size.y;
+      }
+      for (const glm::vec3& p : pack.read(i).mesh.positions) places.push_back(p);
+    }
+    // Bounds reach no farther into each other than pages of the finest level do.
+    if (level == 1) overlapping = area;
+    EXPECT_LE(area, 1.02 * overlapping) << level;
+    // The thinnest cover takes 0.385 for a square of the error; there are some more for borders,
+    // and as the largest error counts.
+    EXPECT_LE(error * error * static_cast<float>(points), 0.7F) << level;
+    const double kept = static_cast<double>(points) / static_cast<double>(before);
+    EXPECT_LE(kept, level <= 2 ? 0.57 : 0.805) << level;
+    EXPECT_GE(kept, level <= 2 ? 0.41 : 0.58) << level;
+    before = points;
+    for (std::size_t i = 0; i < scene.meshes[0].positions.size(); i += 997) {
+      float nearest = 2;
+      for (const glm::vec3& p : places)
+        nearest = std::min(nearest, glm::distance(p, scene.meshes[0].positions[i]));
+      EXPECT_LE(nearest, error) << level;
+    }
+  }
+  EXPECT_LE(before, 1000U);
 }
 
 TEST(Simplify, KeepsTheBorderAndHalfOfTheTriangles) {

@@ -71,6 +71,47 @@ TEST(Cells, AreFewWherePlacesAre) {
   EXPECT_EQ(Cells().cell_of({5, 5, 5}), 0U);
 }
 
+TEST(NestedCells, AreHalvesOfLargerOnes) {
+  for (const int n : {1, 6, 7, 100, 1000, 3000}) {
+    const std::vector<PageRow> rows = pages_in_a_square(n, 7);
+    std::vector<std::uint32_t> cells = nested_cells(rows, {0, static_cast<std::uint32_t>(n)});
+    for (std::uint32_t count = 1 + *std::ranges::max_element(cells);; count /= 2) {
+      std::vector<geometry::Box3> boxes(count);
+      std::vector<std::uint32_t> sizes(count, 0);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        boxes[cells[i]].include(rows[i].box);
+        ++sizes[cells[i]];
+      }
+      double area = 0;
+      for (const geometry::Box3& box : boxes)
+        area += static_cast<double>(box.size().x) * static_cast<double>(box.size().y);
+      EXPECT_LE(area, 1) << n << ' ' << count;
+      EXPECT_LE(*std::ranges::max_element(sizes) - *std::ranges::min_element(sizes),
+                static_cast<std::uint32_t>(n) / count / 2 + 1);
+      if (count == 1) break;
+      EXPECT_EQ(count % 2, 0U);
+      for (std::uint32_t& cell : cells) cell /= 2;
+    }
+  }
+}
+
+TEST(NestedCells, HaveSoManyPages) {
+  for (std::uint32_t n = 1; n < 300; ++n) {
+    const std::vector<PageRow> rows = pages_in_a_square(static_cast<int>(n), n);
+    std::map<std::uint32_t, std::size_t> sizes;
+    for (const std::uint32_t cell : nested_cells(rows, {0, n})) ++sizes[cell];
+    for (const auto& [cell, size] : sizes) {
+      EXPECT_LE(size, kGroupPages * 3 / 2 + 1) << n;
+      EXPECT_GE(size, std::min<std::size_t>(n, kGroupPages * 3 / 4)) << n;
+    }
+  }
+  std::vector<PageRow> rows = pages_in_a_square(100, 1);
+  for (PageRow& row : rows) row.box = rows[0].box;  // at one place
+  const std::vector<std::uint32_t> cells = nested_cells(rows, {0, 100});
+  EXPECT_EQ(*std::ranges::max_element(cells), 31U);
+  EXPECT_TRUE(nested_cells(rows, {0, 0}).empty());
+}
+
 TEST(OrderByCell, KeepsTrianglesAndWhatIsKnownOfThem) {
   const std::vector<PageRow> rows = pages_in_a_square(64, 3);
   const Cells cells(rows, {0, 64}, 8.0 * kFull, 2);

@@ -100,6 +100,18 @@ TEST(ThinPoints, BesideOneFarAwayAreNearToOneThatStays) {
   }
 }
 
+TEST(ThinPoints, DoNotDependMuchOnWhatIsExpected) {
+  const scenes::Mesh mesh = points_on_a_surface(3000, 29);
+  const float error = thin_points({mesh}, 1000).errors.largest;
+  for (const float expected : {1e-30F, 0.001F, 0.5F * error, error, 2 * error, 10.0F, 1e30F}) {
+    const ThinnedPoints third = thin_points({mesh}, 1000, expected);
+    EXPECT_LE(third.mesh.positions.size(), 1000U) << expected;
+    EXPECT_GE(third.mesh.positions.size(), 800U) << expected;
+    EXPECT_LE(largest_distance(mesh, {}, third.mesh), third.errors.largest) << expected;
+    EXPECT_LE(third.errors.largest, 1.1F * error) << expected;
+  }
+}
+
 TEST(ThinPoints, StayOnceWhateverTheirErrorWasBefore) {
   const scenes::Mesh mesh = points_on_a_surface(4000, 23);
   std::vector<float> before(4000, 0);
