@@ -250,6 +250,13 @@ TEST(ComparePartition, CountsAlikeFromRunToRun) {
   }
 }
 
+TEST(ComparePartition, RefusesBezelsOfNoWall) {
+  const Folder folder;
+  const Ran ran = run("delray compare partition gen:cornell:100 --quick --bezel 6", folder.path());
+  EXPECT_EQ(ran.exit_code, 2);
+  EXPECT_EQ(ran.err, "error: --bezel has no effect with no --wall\n");
+}
+
 // 12 displays of 60 x 40 pixels: rank 0 would be sent all but its own.
 TEST(ComparePartition, CountsPixelsOnTheirWayToAWall) {
   const Folder folder;

@@ -27,6 +27,7 @@ int run(Session& session, const CLI::App& command, PartitionRequest request) {
   if (request.list) return list_for_partition();
   if (session.under_mpi)
     throw UsageError("compare partition: its ranks take turns in one process; leave out mpirun");
+  refuse_if_idle("--bezel", command, request.render);
   // The most ranks take a minute more.
   if (request.quick && command.count("--ranks") == 0) request.ranks.pop_back();
   return run_scene_comparison(

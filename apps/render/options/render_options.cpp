@@ -70,15 +70,6 @@ void complete(const CLI::App& command, RenderRequest& request) {
   complete_sampling(command, request);
 }
 
-// Throws UsageError for the first option that was given and changes nothing.
-void refuse_idle(const CLI::App& command, const RenderRequest& request) {
-  for (const RenderOption& option : all_options()) {
-    if (command.count(option.flag()) == 0) continue;
-    const std::string why = option.why_idle(request);
-    if (!why.empty()) throw UsageError(fmt::format("{} has no effect with {}", option.flag(), why));
-  }
-}
-
 void check_layout(const RenderRequest& request) {
   const FrameLayout& layout = request.layout;
   if (request.legend && layout.wall)
@@ -137,6 +128,14 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   choose_scheme(command);
 }
 
+void refuse_if_idle(std::string_view name, const CLI::App& command, const RenderRequest& request) {
+  for (const RenderOption& option : all_options()) {
+    if (option.flag() != name || command.count(option.flag()) == 0) continue;
+    const std::string why = option.why_idle(request);
+    if (!why.empty()) throw UsageError(fmt::format("{} has no effect with {}", name, why));
+  }
+}
+
 void add_options(std::initializer_list<std::string_view> names, CLI::App& command,
                  RenderRequest& request) {
   for (const std::string_view name : names) {
@@ -187,7 +186,7 @@ void check(const CLI::App& command, RenderRequest& request) {
                     is_video(request.output) ? "a video" : "JPEG"));
   }
   complete(command, request);
-  refuse_idle(command, request);
+  for (const RenderOption& option : all_options()) refuse_if_idle(option.flag(), command, request);
   check_layout(request);
   if (request.engine == Engine::raster) {
     check_raster(request);

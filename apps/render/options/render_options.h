@@ -85,6 +85,8 @@ void add_render_options(CLI::App& command, RenderRequest& request);
 // Some of them, for commands that have no others.
 void add_options(std::initializer_list<std::string_view> names, CLI::App& command,
                  RenderRequest& request);
+// Throws UsageError where an option was given and changes nothing.
+void refuse_if_idle(std::string_view name, const CLI::App& command, const RenderRequest& request);
 
 // An option beside the others of a request.
 struct OptionState {
