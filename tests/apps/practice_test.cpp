@@ -16,8 +16,9 @@ namespace {
 
 using nlohmann::json;
 
+const std::string kRays = "delray render gen:spheres:2000 --engine raytrace -q ";
 const std::string kSmall = " --engine raytrace --size 80x60 -q ";
-const std::string kBall = "delray render gen:spheres:2000" + kSmall;
+const std::string kBall = kRays + "--size 80x60 ";
 
 json stats_of(const std::string& options, const Folder& folder, const std::string& what = kBall) {
   const Ran ran = run(what + options + " --stats stats.json", folder.path());
@@ -55,10 +56,11 @@ TEST(Practice, APictureGoesOnToMoreSamplesThanItWasBegunFor) {
     SCOPED_TRACE(options);
     const Folder folder;
     const std::string picture = options + "-o a.exr ";
-    const json whole = stats_of(picture + "--spp 44", folder);
-    const json begun = stats_of(picture + "--spp 16 --checkpoint a.film", folder);
+    const std::string tiny = kRays + "--size 40x30 ";
+    const json whole = stats_of(picture + "--spp 44", folder, tiny);
+    const json begun = stats_of(picture + "--spp 16 --checkpoint a.film", folder, tiny);
     EXPECT_NE(begun["image"]["hash"], whole["image"]["hash"]);
-    const json more = stats_of(picture + "--spp 44 --checkpoint a.film --resume", folder);
+    const json more = stats_of(picture + "--spp 44 --checkpoint a.film --resume", folder, tiny);
     EXPECT_EQ(more["image"]["hash"], whole["image"]["hash"]);
     EXPECT_EQ(more["sampling"]["samples"], whole["sampling"]["samples"]);
   }

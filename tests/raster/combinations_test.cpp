@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
+#include <random>
 #include <set>
 
 #include "comm/threads.h"
@@ -37,26 +39,39 @@ TEST(Combinations, HaveNamesOfTheirOwnAndAllStrategies) {
 
 TEST(Combinations, GiveOnePicture) {
   const bool full = std::getenv("DELRAY_FULL_TESTS") != nullptr;
-  // Without it every combination is looked at with some number of ranks and threads for some kinds.
+  // Without it every combination is looked at for some kinds, one in so many, each with some number
+  // of ranks and threads.
 #ifdef __SANITIZE_THREAD__
-  constexpr int kStep = 1009;
+  constexpr std::size_t kOneIn = 24;
 #else
-  constexpr int kStep = 101;
+  constexpr std::size_t kOneIn = 8;
 #endif
-  const int step = full ? 1 : kStep;
-  int turn = 0;
+  const std::size_t one_in = full ? 1 : kOneIn;
+  struct Looked {
+    std::size_t kinds, times;
+  };
+  std::map<std::string, Looked> looked;
+  std::mt19937 random(20261129);
   for (const KindOfPicture& kind : kinds_of_picture(53, 39)) {
     const Picture expected = rendered(kind, kind.options, 1, 1);
     for (const RenderOptions& options : combinations(kind.options)) {
-      for (int ranks = 1; ranks <= 9; ++ranks) {
-        for (int threads = 1; threads <= 3; ++threads) {
-          if (++turn % step != 0) continue;
+      // Combinations begin at kinds of their own.
+      Looked& of_it = looked.try_emplace(name_of(options), Looked{looked.size(), 0}).first->second;
+      if (++of_it.kinds % one_in != 0) continue;
+      ++of_it.times;
+      const int some_ranks = 1 + static_cast<int>(random() % 9);
+      const int some_threads = 1 + static_cast<int>(random() % 3);
+      for (int ranks = full ? 1 : some_ranks; ranks <= (full ? 9 : some_ranks); ++ranks) {
+        for (int threads = full ? 1 : some_threads; threads <= (full ? 3 : some_threads);
+             ++threads) {
           ASSERT_TRUE(same_bytes(rendered(kind, options, ranks, threads), expected))
               << kind.name << ": " << name_of(options) << " " << ranks << " x " << threads;
         }
       }
     }
   }
+  for (const auto& [name, of_it] : looked) EXPECT_GE(of_it.times, 1U) << name;
+  EXPECT_EQ(looked.size(), combinations({}).size());
 }
 
 }  // namespace
