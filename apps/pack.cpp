@@ -33,7 +33,8 @@ struct PackOptions {
 };
 
 void pack_scene(const PackOptions& options, parallel::Progress* progress) {
-  const packs::WriteOptions write{!options.exact_only, progress};
+  const packs::WriteOptions write{!options.exact_only, progress,
+                                  options.scene.file.limits.budget()};
   if (is_surface_in_pieces(options.scene)) {
     pack_folder(options.scene, options.output, write, progress);
     return;

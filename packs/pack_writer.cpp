@@ -146,7 +146,7 @@ std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t materi
                               state.append(made);
                               state.flush();
                             },
-                            state.scratch, state.options.progress},
+                            state.scratch, state.options.progress, state.options.memory},
                            state.table.pages, state.table.groups, state.mesh);
   }
   state.first = static_cast<std::uint32_t>(state.table.pages.size());

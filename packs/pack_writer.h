@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "files/memory_budget.h"
 #include "packs/page.h"
 #include "parallel/progress.h"
 #include "scenes/scene.h"
@@ -22,10 +23,14 @@ struct WriteOptions {
   // Told how far the levels of each mesh are, which take longest. Once it is asked to stop, what
   // appends throws parallel::Interrupted, and no file is left.
   parallel::Progress* progress = nullptr;
+  // As many groups of a level are made at once as it has room for, one at least: of points each may
+  // take 90 MB.
+  files::MemoryBudget memory = files::MemoryBudget::unlimited();
 };
 
-// A file that appears whole or not at all. Besides what it is given it needs some pages, and a row
-// for each that it has written. See docs/packs.md for the format.
+// A file that appears whole or not at all. Besides what it is given it needs some pages, a row for
+// each that it has written, and for levels what WriteOptions::memory says. See docs/packs.md for
+// the format.
 class PackWriter {
  public:
   // Throws FileError (device), as all of it does. Where levels are written the file has to be one

@@ -104,7 +104,10 @@ int main(int argc, char** argv) {
       std::printf("exact %9llu triangles %7.1f ms, error %.2f %9llu triangles %7.1f ms, levels",
                   triangles(results[0]), seconds[1] * 1e3, error, triangles(results[1]),
                   seconds[3] * 1e3);
-      for (const std::uint64_t level : results[1].statistics.pack->levels)
+      const auto& levels = results[1].statistics.pack->levels;
+      const auto coarsest =
+          std::find_if(levels.rbegin(), levels.rend(), [](auto n) { return n > 0; });
+      for (const std::uint64_t level : std::span(levels.begin(), coarsest.base()))
         std::printf(" %llu", static_cast<unsigned long long>(level));
       std::printf("\n");
       for (const auto& [distance, count] : own) pixels[distance] += count;

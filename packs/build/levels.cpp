@@ -17,7 +17,7 @@
 // Points have no borders that need be the same: of them some are left out (thin_points.h), and
 // pages are full. Their cells are nested, so that bounds and errors of groups, which have those of
 // all below them, do not reach beyond their own points: with cells cut elsewhere on every level
-// three tenths more are drawn for a bound of error.
+// two fifths more are drawn for a bound of error.
 //
 // A group of which hardly anything can be left out goes on to the next level all the same, a few
 // times, as its pages have other borders there: left behind, it would lock those of their
@@ -287,17 +287,28 @@ struct LastLevel {
   std::vector<std::uint8_t> failures;  // of the pages of the level
   std::vector<std::uint32_t> cells;    // of them
   double triangles = 0;                // of the level
+  double of_reference = 0;             // of the level that it is measured against
 };
+
+// How many groups a thread may have before all wait for the file: as few at once as there is memory
+// for what they are measured against.
+std::size_t groups_at_once(const files::MemoryBudget& memory, double triangles_of_a_group) {
+  constexpr double kBytes = 256;  // for a triangle, or point, that others are measured against
+  const auto threads = static_cast<std::size_t>(parallel::arena_threads());
+  const double fit = static_cast<double>(memory.left()) / (kBytes * triangles_of_a_group + 1);
+  if (fit >= static_cast<double>(threads)) return kGroupsPerThread * threads;
+  return std::max(std::size_t{1}, static_cast<std::size_t>(fit));
+}
 
 }  // namespace
 
 void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
                   std::vector<Group>& groups, MeshRow& mesh) {
-  const std::size_t wave = kGroupsPerThread * static_cast<std::size_t>(parallel::arena_threads());
   const bool points = mesh.shape.kind != scenes::Shape::Kind::triangle;
   LastLevel last;
   last.first_reference = mesh.levels.front().first;
   for (const PageRow& row : rows_of(pages, mesh.levels.front())) last.triangles += row.triangles;
+  last.of_reference = last.triangles;
   parallel::Progress* const progress = builder.progress;
   if (progress != nullptr)
     progress->start(static_cast<std::uint64_t>(Steps::work(last.triangles, points)));
@@ -319,6 +330,8 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
     if (!steps.is_reference()) next.lists = std::make_unique<ReferenceLists>(builder.scratch);
     PageRange range{static_cast<std::uint32_t>(pages.size()), 0};
     std::uint32_t first = 0;
+    const std::size_t wave =
+        groups_at_once(builder.memory, last.of_reference / static_cast<double>(members.size()));
     std::vector<MadeGroup> made(std::min(wave, members.size()));
     for (std::size_t begin = 0; begin < members.size(); begin += wave) {
       const std::size_t count = std::min(wave, members.size() - begin);
@@ -362,8 +375,10 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
     left = std::min(next.triangles / last.triangles, 1.0);
     if (steps.is_reference()) {
       next.first_reference = range.first;
+      next.of_reference = next.triangles;
     } else {
       next.first_reference = last.first_reference;
+      next.of_reference = last.of_reference;
       next.errors = std::move(last.errors);
     }
     last = std::move(next);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "files/memory_budget.h"
 #include "packs/build/encoded_page.h"
 #include "packs/page.h"
 #include "parallel/progress.h"
@@ -19,6 +20,7 @@ struct LevelBuilder {
   // Of a file without a name: two to four bytes for each triangle of the finest level.
   std::filesystem::path scratch;
   parallel::Progress* progress = nullptr;  // counts triangles that others are measured against
+  files::MemoryBudget memory = files::MemoryBudget::unlimited();
 };
 
 // Simplifies the finest level of the mesh, and what becomes of it, level by level, as long as that

@@ -209,7 +209,8 @@ class Thinning {
         best = std::move(tried);
         if (count >= kEnough * wanted) break;
       }
-      const bool is_misled = i == 0 && (count > 2 * wanted || 2 * count < wanted);
+      const bool is_misled = i == 0 && ((count > 2 * wanted && start > radius) ||
+                                        (2 * count < wanted && start < radius));
       radius =
           is_misled && radius != start ? start : radius * std::sqrt(count / (kWanted * wanted));
       if (std::isinf(high)) {

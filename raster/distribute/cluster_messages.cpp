@@ -322,8 +322,13 @@ void unpack_clusters(std::span<const std::byte> bytes, std::deque<ArrivedMesh>& 
     ClusterBlock& block = *section.mesh->clusters.blocks[0];
     block.box.include(block.clusters[section.part].box);
     const auto count = static_cast<std::uint16_t>(section.cluster.count);
-    list.clusters[section.header.cluster] = {section.draw, section.cluster.first, section.part, 0,
-                                             count};
+    list.clusters[section.header.cluster] = {section.draw,
+                                             section.cluster.first,
+                                             section.part,
+                                             0,
+                                             count,
+                                             0,
+                                             section.cluster.vertex_of_place_0()};
     list.triangles += count;
     numbers.push_back(section.header.cluster);
   }

@@ -109,7 +109,7 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
 
     batch.clear();
     const std::size_t most = std::clamp(at / 2, kBatchPages, kMostBatchPages);
-    for (; at < order.size() && batch.size() < most; ++at) {
+    for (; at < asked && batch.size() < most; ++at) {
       const PlacedPage& page = pages_[order[at].second];
       if (hides(drawing, page)) {
         counts.in += page.triangles;
