@@ -48,10 +48,14 @@ std::vector<EncodedPage> encode_block(const scenes::Mesh& mesh, std::uint32_t fi
 
 struct PackWriter::State {
   State(const std::filesystem::path& path, const WriteOptions& how)
-      : options(how), scratch(std::filesystem::absolute(path).parent_path()), file(path) {}
+      : options(how),
+        scratch(std::filesystem::absolute(path).parent_path()),
+        name(path.string()),
+        file(path) {}
 
   const WriteOptions options;
   const std::filesystem::path scratch;  // the folder of the file
+  const std::string name;
   files::AtomicFile file;
   std::uint64_t written = 0;
   internal::Table table;
@@ -141,13 +145,14 @@ std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t materi
   state.mesh.shape = shape;
   state.mesh.levels.push_back({state.first, pages - state.first});
   if (state.options.levels && state.mesh.shape.kind != scenes::Shape::Kind::line) {
-    internal::build_levels({[&](std::uint32_t page) { return state.read(page); },
-                            [&](std::vector<EncodedPage>&& made) {
-                              state.append(made);
-                              state.flush();
-                            },
-                            state.scratch, state.options.progress, state.options.memory},
-                           state.table.pages, state.table.groups, state.mesh);
+    internal::build_levels(
+        {[&](std::uint32_t page) { return state.read(page); },
+         [&](std::vector<EncodedPage>&& made) {
+           state.append(made);
+           state.flush();
+         },
+         state.scratch, state.options.progress, state.options.memory, state.name},
+        state.table.pages, state.table.groups, state.mesh);
   }
   state.first = static_cast<std::uint32_t>(state.table.pages.size());
   state.table.meshes.push_back(std::move(state.mesh));

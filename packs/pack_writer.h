@@ -23,8 +23,8 @@ struct WriteOptions {
   // Told how far the levels of each mesh are, which take longest. Once it is asked to stop, what
   // appends throws parallel::Interrupted, and no file is left.
   parallel::Progress* progress = nullptr;
-  // As many groups of a level are made at once as it has room for, one at least: of points each may
-  // take 90 MB.
+  // As many groups of a level are made at once as it has room for. Of points each may take 60 MB;
+  // FileError (memory) where one does not fit.
   files::MemoryBudget memory = files::MemoryBudget::unlimited();
 };
 

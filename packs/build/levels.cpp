@@ -52,7 +52,7 @@ constexpr double kKeptPoints = 0.70710678;
 constexpr double kPageTriangles = kPageClusters * kClusterTriangles;
 constexpr double kGroupTriangles = static_cast<double>(kGroupPages) * kPageTriangles;
 // A level is measured against one of which so much is left at least. Less takes longer and more
-// memory (90 MB a thread for points), as a level is then measured against so many times its
+// memory (60 MB a thread for points), as a level is then measured against so many times its
 // triangles; but errors double on the level after a reference, as those of that come on top.
 constexpr double kReferencePart = 1.0 / 8, kPointReferencePart = 1.0 / 256;
 // Surfaces are farther apart between the places that are measured: by less than that, as exact
@@ -290,12 +290,15 @@ struct LastLevel {
   double of_reference = 0;             // of the level that it is measured against
 };
 
-// How many groups a thread may have before all wait for the file: as few at once as there is memory
-// for what they are measured against.
+// For a point that others are measured against; measured.
+constexpr double kBytesPerPoint = 80;
+
+// How many groups may be made before all wait for the file: as few at once as there is memory for
+// what they are measured against, of which some have half as much again as others.
 std::size_t groups_at_once(const files::MemoryBudget& memory, double triangles_of_a_group) {
-  constexpr double kBytes = 256;  // for a triangle, or point, that others are measured against
   const auto threads = static_cast<std::size_t>(parallel::arena_threads());
-  const double fit = static_cast<double>(memory.left()) / (kBytes * triangles_of_a_group + 1);
+  const double fit =
+      static_cast<double>(memory.left()) / (1.5 * kBytesPerPoint * triangles_of_a_group + 1);
   if (fit >= static_cast<double>(threads)) return kGroupsPerThread * threads;
   return std::max(std::size_t{1}, static_cast<std::size_t>(fit));
 }
@@ -314,6 +317,12 @@ void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
     progress->start(static_cast<std::uint64_t>(Steps::work(last.triangles, points)));
   last.cells = points ? nested_cells(pages, mesh.levels.front())
                       : cells_of_whole(pages, mesh.levels.front(), 1);
+  if (points) {
+    const double cells = 1.0 + *std::ranges::max_element(last.cells);
+    const double largest = std::min(last.triangles, last.triangles / cells / kPointReferencePart);
+    builder.memory.require(static_cast<std::uint64_t>(kBytesPerPoint * largest), builder.name,
+                           "its levels");
+  }
   Steps steps(points);
   double left = kKept;  // of the triangles, by a level
   Cells cells;          // one: points have no borders

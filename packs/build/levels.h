@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "files/memory_budget.h"
@@ -21,11 +22,14 @@ struct LevelBuilder {
   std::filesystem::path scratch;
   parallel::Progress* progress = nullptr;  // counts triangles that others are measured against
   files::MemoryBudget memory = files::MemoryBudget::unlimited();
+  std::string name;  // of the pack, for errors
 };
 
 // Simplifies the finest level of the mesh, and what becomes of it, level by level, as long as that
 // leaves fewer triangles. Pages get the groups that they are simplified in; groups and levels are
-// appended. Parallel over groups, a few at a time; the same for every number of threads.
+// appended. Parallel over groups, as many at a time as there is memory for; the same for every
+// number of threads. Throws FileError (memory), before anything is made, where there is none for
+// the largest group of points.
 // O(triangles log triangles).
 void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
                   std::vector<Group>& groups, MeshRow& mesh);

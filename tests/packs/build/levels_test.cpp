@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <set>
 
+#include "files/error.h"
 #include "packs/build/simplify.h"
 #include "packs/build/surface_error.h"
 #include "packs/build/vertices.h"
@@ -309,6 +311,17 @@ TEST(Levels, OfPointsAreNestedAndCoverAll) {
     }
   }
   EXPECT_LE(before, 1000U);
+}
+
+TEST(Levels, OfPointsAreRefusedWhereTheyDoNotFitTheMemory) {
+  const tests::TemporaryFolder folder;
+  WriteOptions options;
+  options.memory = files::MemoryBudget(1);
+  EXPECT_THROW(write_pack(folder / "a.pack", points_in_a_square(20'000, 6), options),
+               files::FileError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.pack"));
+  options.memory = files::MemoryBudget(files::resident_set() + (std::uint64_t{64} << 20));
+  write_pack(folder / "a.pack", points_in_a_square(20'000, 6), options);
 }
 
 TEST(Simplify, KeepsTheBorderAndHalfOfTheTriangles) {
