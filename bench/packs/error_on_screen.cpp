@@ -4,8 +4,10 @@
 // A pixel is displaced by r pixels if r is the least for which its depth is, within r pixels on the
 // screen, between depths of the other picture that are r pixels around, either way.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <map>
+#include <span>
 
 #include "bench/measure.h"
 #include "comm/threads.h"

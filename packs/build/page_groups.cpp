@@ -3,6 +3,8 @@
 // level (alternate partitions: Cignoni, Ganovelli, Gobbetti, Marton, Ponchio and Scopigno, Batched
 // Multi Triangulation, 2005).
 //
+// Nested cells are halves by number, across the longest side, however pages lie.
+//
 // Degenerate: pages with all centres at one place are in one cell, whatever they have; their groups
 // are cut by number.
 #include "packs/build/page_groups.h"

@@ -1,10 +1,11 @@
 // Covers points by balls around some of them, few for their radius: a sweep comes to the first
 // point that is not covered, and of a few points further on whose balls have it takes the one that
 // covers most of what is left, a greedy choice of sets (Johnson 1974) that leaves no gaps behind
-// it. On a plane 0.52 / radius^2 points are taken for a unit of area where there are many to choose
+// it. On a plane 0.50 / radius^2 points are taken for a unit of area where there are many to choose
 // from; dart throwing takes 0.66, the thinnest cover of all 0.38. The radius that leaves as many as
-// wanted is searched for in an interval. A hash grid finds who is near: of cells twice as wide as
-// the radius eight have all of a ball.
+// wanted is searched for in an interval. Where balls have many points a sample of them tells how
+// much each covers. A hash grid finds who is near: of cells twice as wide as the radius eight have
+// all of a ball.
 //
 // Degenerate: points at one place are one; where all are, one is left. A radius is no less than
 // what rounding does to places: beside one that is very far away others are as one.
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "packs/build/vertices.h"
@@ -144,12 +146,17 @@ class Thinning {
   // before, unless that alone is more.
   Chosen choose(float radius) const {
     Chosen chosen;
-    std::vector<glm::vec3> some_places;
-    for (std::size_t i = 0; i < places_.size(); i += stride_) some_places.push_back(places_[i]);
-    Grid left(places_, box_.low, radius), some_left(some_places, box_.low, radius);
+    Grid left(places_, box_.low, radius);
+    std::optional<Grid> sample;  // those that tell how much a ball covers, where not all do
+    if (stride_ > 1) {
+      std::vector<glm::vec3> places;
+      for (std::size_t i = 0; i < places_.size(); i += stride_) places.push_back(places_[i]);
+      sample.emplace(places, box_.low, radius);
+    }
+    const Grid& some_left = sample ? *sample : left;
     const auto set_reach = [&](std::uint32_t i, float squared) {
       left.set_reach(i, squared);
-      if (i % stride_ == 0) some_left.set_reach(i / stride_, squared);
+      if (sample && i % stride_ == 0) sample->set_reach(i / stride_, squared);
     };
     for (std::uint32_t i = 0; i < places_.size(); ++i) {
       const float reach = radius - before_[i];

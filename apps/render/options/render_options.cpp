@@ -59,6 +59,13 @@ const std::vector<RenderOption>& all_options() {
   return all;
 }
 
+void refuse_if_idle(const RenderOption& option, const CLI::App& command,
+                    const RenderRequest& request) {
+  if (command.count(option.flag()) == 0) return;
+  const std::string why = option.why_idle(request);
+  if (!why.empty()) throw UsageError(fmt::format("{} has no effect with {}", option.flag(), why));
+}
+
 // Defaults that depend on the engine, for options that were not given.
 void complete(const CLI::App& command, RenderRequest& request) {
   Sharing& sharing = request.sharing;
@@ -129,11 +136,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
 }
 
 void refuse_if_idle(std::string_view name, const CLI::App& command, const RenderRequest& request) {
-  for (const RenderOption& option : all_options()) {
-    if (option.flag() != name || command.count(option.flag()) == 0) continue;
-    const std::string why = option.why_idle(request);
-    if (!why.empty()) throw UsageError(fmt::format("{} has no effect with {}", name, why));
-  }
+  refuse_if_idle(*std::ranges::find(all_options(), name, &RenderOption::flag), command, request);
 }
 
 void add_options(std::initializer_list<std::string_view> names, CLI::App& command,
@@ -186,7 +189,7 @@ void check(const CLI::App& command, RenderRequest& request) {
                     is_video(request.output) ? "a video" : "JPEG"));
   }
   complete(command, request);
-  for (const RenderOption& option : all_options()) refuse_if_idle(option.flag(), command, request);
+  for (const RenderOption& option : all_options()) refuse_if_idle(option, command, request);
   check_layout(request);
   if (request.engine == Engine::raster) {
     check_raster(request);
