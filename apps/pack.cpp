@@ -88,8 +88,8 @@ int run(Session& session, const PackOptions& options) {
   statistics["seconds"] = {{"pack", watch.lap()}};
   write_statistics(options.statistics, statistics);
   const Json& result = statistics["result"];
-  spdlog::info("{}: {} in {} pages, {}", output,
-               primitives_text(result["triangles"], result["points"]), result["pages"].dump(),
+  spdlog::info("{}: {} in {}, {}", output, primitives_text(result["triangles"], result["points"]),
+               count_text(result["pages"], "page"),
                files::bytes_text(result["bytes"].get<std::uint64_t>()));
   return kDone;
 }

@@ -23,11 +23,15 @@ std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kibibytes
 }
 
+std::string count_text(std::uint64_t count, const char* one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
 std::string primitives_text(std::uint64_t triangles, std::uint64_t splats) {
-  std::string points = fmt::format("{} points and lines", splats);
+  const std::string points =
+      splats == 1 ? "1 point or line" : fmt::format("{} points and lines", splats);
   if (triangles == 0 && splats > 0) return points;
-  return fmt::format("{} triangles{}{}", triangles, splats > 0 ? ", " : "",
-                     splats > 0 ? points : "");
+  return count_text(triangles, "triangle") + (splats > 0 ? ", " + points : "");
 }
 
 }  // namespace delray::apps

@@ -30,6 +30,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// "1 page", "2 pages". `one` is a noun whose plural ends in s.
+std::string count_text(std::uint64_t count, const char* one);
+
 // What a scene is made of: "12 triangles, 3 points and lines", without what there is none of.
 std::string primitives_text(std::uint64_t triangles, std::uint64_t splats);
 

@@ -37,7 +37,8 @@ int verify_pack(Session& session, const VerifyOptions& options) {
                                           {"bytes", pack.file_bytes()},
                                           {"valid", true}}}});
   if (options.statistics != "-") {
-    fmt::print("valid: yes\nchecked: {} pages, {} bytes\n", pack.pages().size(), pack.file_bytes());
+    fmt::print("valid: yes\nchecked: {}, {} bytes\n", count_text(pack.pages().size(), "page"),
+               pack.file_bytes());
   }
   return kDone;
 }

@@ -319,6 +319,16 @@ TEST(Pack, OfPointsHasNoTriangles) {
   EXPECT_EQ(scene["points"], 3000);
 }
 
+TEST(Pack, CountsOneAsOne) {
+  const Folder folder;
+  folder.write("t.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Ran packed = run("delray pack t.off -o t.pack", folder.path());
+  ASSERT_EQ(packed.exit_code, 0) << packed.err;
+  EXPECT_NE(packed.err.find("t.pack: 1 triangle in 1 page, "), std::string::npos) << packed.err;
+  const Ran verified = run("delray verify t.pack", folder.path());
+  EXPECT_NE(verified.out.find("checked: 1 page, "), std::string::npos) << verified.out;
+}
+
 TEST(Pack, TerminationLeavesNothing) {
   const Folder folder;
   // Told to end once the program catches SIGTERM, in a minute of work.
