@@ -33,7 +33,8 @@ class Stopwatch {
 // "1 page", "2 pages". `one` is a noun whose plural ends in s.
 std::string count_text(std::uint64_t count, const char* one);
 
-// What a scene is made of: "12 triangles, 3 points and lines", without what there is none of.
+// What a scene is made of: "12 triangles, 3 points and lines", or "1 triangle", without what there
+// is none of.
 std::string primitives_text(std::uint64_t triangles, std::uint64_t splats);
 
 // The most memory that this process has had, bytes.

@@ -10,6 +10,7 @@
 #include "apps/report/page.h"
 #include "apps/report/series.h"
 #include "apps/report/table.h"
+#include "apps/statistics.h"
 
 namespace delray::apps {
 namespace {
@@ -35,7 +36,6 @@ std::string counts_text(const ComparedScheme& row) {
   return fmt::format("{} sent in {} messages (counted)", in_bytes(row.counts.bytes_total),
                      row.counts.messages);
 }
-std::string cores_text(int cores) { return fmt::format("{} core{}", cores, cores == 1 ? "" : "s"); }
 double total(const Predicted& predicted) { return predicted.seconds + predicted.gather_seconds; }
 
 // With as many ranks the one that takes least after the best.
@@ -55,8 +55,7 @@ Html measured_sentence(const ComposeComparison& comparison, const SchemeWinners&
                        bool codecs) {
   const ComparedScheme& first = *best.front();
   const std::vector<std::string> names = names_of(best, codecs);
-  Html text =
-      fmt::format("<p>On {} rank{} of this machine ", first.ranks, first.ranks == 1 ? "" : "s");
+  Html text = fmt::format("<p>On {} of this machine ", count_text(first.ranks, "rank"));
   text += best.size() == 1 ? fmt::format("use {}: ", strong(names[0]))
                            : fmt::format("there is no difference between {}: {} takes ",
                                          strong(listed(names)), escaped(names[0]));
@@ -68,7 +67,7 @@ Html measured_sentence(const ComposeComparison& comparison, const SchemeWinners&
   }
   if (first.ranks > comparison.cores) {
     text += fmt::format(" They share {}: that tells nothing of a machine with a core for each.",
-                        cores_text(comparison.cores));
+                        count_text(comparison.cores, "core"));
   }
   return text + "</p>\n";
 }
@@ -87,7 +86,7 @@ Html predicted_sentence(const ComposeComparison& comparison, int ranks, const st
                     "{} with the gather (predicted), {}. So many ranks are simulated, not "
                     "measured: this machine has {}.</p>\n",
                     time_text(total(*prediction(*best.front(), network))),
-                    counts_text(*best.front()), cores_text(comparison.cores));
+                    counts_text(*best.front()), count_text(comparison.cores, "core"));
 }
 
 // A sentence on how sure the first place is.

@@ -18,6 +18,7 @@
 #include "apps/report/series.h"
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
+#include "apps/statistics.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -386,12 +387,11 @@ Html figures(const ScheduleRequest& request, const ScheduleComparison& compariso
   }
   result.rows.assign(text.begin() + 1, text.end());
   return table(result) +
-         paragraph(fmt::format(
-             "Counts are of the simulated machine over {}. Integrator {}, {} ray{} "
-             "per pixel, tiles of {} pixels, size {}.",
-             request.networks.front().name, request.render.raytrace.integrator,
-             request.render.raytrace.samples, request.render.raytrace.samples == 1 ? "" : "s",
-             request.tile, request.render.size));
+         paragraph(fmt::format("Counts are of the simulated machine over {}. Integrator {}, {} "
+                               "per pixel, tiles of {} pixels, size {}.",
+                               request.networks.front().name, request.render.raytrace.integrator,
+                               count_text(request.render.raytrace.samples, "ray"), request.tile,
+                               request.render.size));
 }
 
 }  // namespace
