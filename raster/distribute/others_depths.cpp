@@ -1,36 +1,71 @@
-// Reduces the codes of depths of blocks over all ranks.
+// Merges the covers of blocks over all ranks.
 //
 // A rank that is done before others finishes tiles meanwhile, with all that it has drawn in them.
-// When the others' depths are known what they hide is emptied again, so that images, counts and
+// When the others' covers are known what they hide is emptied again, so that images, counts and
 // samples are what they would be if it had waited.
 #include "raster/distribute/others_depths.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
+#include <bit>
+#include <cstring>
+#include <iterator>
 
 #include "parallel/parallel_for.h"
 
 namespace delray::raster {
 namespace {
 
-// Empties what lies behind the codes of blocks in a tile that was finished before they were known.
+// A message has the tiles that were drawn in, and the covers of blocks.
+constexpr std::size_t kTiles = sizeof(geometry::Rect) / sizeof(BlockCover);
+static_assert(sizeof(geometry::Rect) % sizeof(BlockCover) == 0);
+
+geometry::Rect tiles_of(const comm::Buffer& message) {
+  geometry::Rect tiles;
+  std::memcpy(&tiles, message.data(), sizeof(tiles));
+  return tiles;
+}
+comm::Buffer message_of(const geometry::Rect& tiles, std::span<const BlockCover> covers) {
+  comm::Buffer message(sizeof(tiles) + covers.size_bytes());
+  std::memcpy(message.data(), &tiles, sizeof(tiles));
+  std::ranges::copy(covers, message.as<BlockCover>().subspan(kTiles).begin());
+  return message;
+}
+void merge(comm::Buffer& lower, comm::Buffer& upper) {
+  const geometry::Rect a = tiles_of(lower), b = tiles_of(upper);
+  const geometry::Rect tiles{std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1),
+                             std::max(a.y1, b.y1)};
+  std::memcpy(lower.data(), &tiles, sizeof(tiles));
+  const std::span<BlockCover> covers = lower.as<BlockCover>().subspan(kTiles);
+  std::ranges::transform(covers, upper.as<BlockCover>().subspan(kTiles), covers.begin(), merged);
+}
+
+// Empties what the covers of blocks hide in a tile that was finished before they were known.
 // Returns how many pixels.
 template <class Colour>
-std::uint64_t drop_hidden(const geometry::Rect& tile, std::span<const std::int32_t> codes,
+std::uint64_t drop_hidden(const geometry::Rect& tile, std::span<const BlockCover> covers,
                           image::BasicImage<Colour>& image) {
+  constexpr int kWidth = VisibilityTile::kBlockWidth, kHeight = VisibilityTile::kBlockHeight;
   std::uint64_t dropped = 0;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
-    const int blocks = (y - tile.y0) / VisibilityTile::kBlockHeight * VisibilityTile::kBlocksX;
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const std::int32_t code = codes[blocks + (x - tile.x0) / VisibilityTile::kBlockWidth];
-      float& depth = image.depth[row + static_cast<std::size_t>(x)];
-      if (code == kEmptyCode || depth == image::kEmptyDepth || code_of_depth(depth) <= code)
-        continue;
-      depth = image::kEmptyDepth;
-      image.colour[row + static_cast<std::size_t>(x)] = {};
-      ++dropped;
+  for (int block = 0; block < VisibilityTile::kBlocks; ++block) {
+    const BlockCover& cover = covers[static_cast<std::size_t>(block)];
+    const int x = tile.x0 + block % VisibilityTile::kBlocksX * kWidth;
+    const int y = tile.y0 + block / VisibilityTile::kBlocksX * kHeight;
+    if (cover.parts == 0 || x >= tile.x1) continue;
+    for (int j = 0; j < std::min(kHeight, tile.y1 - y); ++j) {
+      const std::size_t row =
+          static_cast<std::size_t>(y + j) * static_cast<std::size_t>(image.width) +
+          static_cast<std::size_t>(x);
+      float depths[kWidth];
+      const int width = std::min(kWidth, tile.x1 - x);
+      std::fill(std::copy_n(image.depth.data() + row, width, depths), std::end(depths),
+                image::kEmptyDepth);
+      for (std::uint32_t rest = hidden_in_row(cover, j, depths); rest != 0; rest &= rest - 1) {
+        const std::size_t pixel = row + static_cast<std::size_t>(std::countr_zero(rest));
+        image.depth[pixel] = image::kEmptyDepth;
+        image.colour[pixel] = {};
+        ++dropped;
+      }
     }
   }
   return dropped;
@@ -45,12 +80,8 @@ OthersDepths::OthersDepths(RankContext& rank, RegionDrawing& drawing)
     return;
   const double before = rank.communicator.seconds();
   rank.communicator.mark(comm::Phase::redistribute, 0);
-  std::vector<std::int32_t> least = drawing.farthest_of_blocks();
   mine_ = drawing.tiles_seen();
-  least.insert(least.end(), {mine_.x0, mine_.y0, -mine_.x1, -mine_.y1});
-  pending_.emplace(rank.communicator, comm::Buffer::of(std::span<const std::int32_t>(least)),
-                   comm::elementwise<std::int32_t>(
-                       [](std::int32_t a, std::int32_t b) { return std::min(a, b); }));
+  pending_.emplace(rank.communicator, message_of(mine_, drawing.find_covers()), merge);
   rank.counts.phases.redistribute += rank.communicator.seconds() - before;
 }
 
@@ -68,14 +99,9 @@ geometry::Rect OthersDepths::hide() {
   if (!pending_) return rank_.screen.frame();
   const double before = rank_.communicator.seconds();
   const comm::Buffer all = pending_->finish();
-  const std::span<const std::int32_t> least = all.as<std::int32_t>();
-  const auto [x0, y0, x1, y1] = [&] {
-    const auto last = least.last<4>();
-    return std::array{last[0], last[1], -last[2], -last[3]};
-  }();
-  geometry::Rect seen{x0, y0, x1, y1};
+  geometry::Rect seen = tiles_of(all);
   if (seen.empty()) seen = {0, 0, 1, 1};
-  drawing_.hide_behind({least.begin(), least.end() - 4});
+  drawing_.hide_behind(all.as<BlockCover>().subspan(kTiles));
   rank_.communicator.mark(comm::Phase::rasterize, 0);
   rank_.counts.phases.redistribute += rank_.communicator.seconds() - before;
   return in_samples(seen);
@@ -103,12 +129,10 @@ image::BasicImage<Colour> OthersDepths::end_samples_meanwhile(geometry::Rect& se
   seen = hide();
   std::atomic<std::uint64_t> dropped{0};
   parallel::parallel_for(0, early.size(), 4, [&](std::size_t k) {
-    constexpr std::size_t kBlocks = VisibilityTile::kBlocks;
-    const auto tile = static_cast<std::size_t>(early[k].tile);
+    const int tile = early[k].tile;
     const std::uint64_t here =
-        drop_hidden(rank_.screen.tile(early[k].tile),
-                    drawing_.hidden_behind().subspan(tile * kBlocks, kBlocks), image);
-    rank_.scratch.partly_hidden[tile] = here > 0 ? 1 : 0;
+        drop_hidden(rank_.screen.tile(tile), drawing_.hidden_behind(tile), image);
+    rank_.scratch.partly_hidden[static_cast<std::size_t>(tile)] = here > 0 ? 1 : 0;
     dropped += here;
   });
   if (dropped > 0) {

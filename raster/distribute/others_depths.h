@@ -8,8 +8,8 @@
 
 namespace delray::raster {
 
-// How far each block of the screen is at most on any rank, while that is found out, so that none
-// shades what another hides. Nothing happens where drawings are not composited or that cannot be
+// What each block of the screen hides on any rank, while that is found out, so that none shades
+// what another hides. Nothing happens where drawings are not composited or that cannot be
 // known in time.
 class OthersDepths {
  public:

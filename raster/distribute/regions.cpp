@@ -211,18 +211,25 @@ void RegionDrawing::end_drawing() {
   counts_.shaded = costs_.shaded;
 }
 
-void RegionDrawing::hide_behind(std::vector<std::int32_t>&& codes) {
-  hidden_behind_ = std::move(codes);
-  scratch_.partly_hidden.resize(static_cast<std::size_t>(task_.screen.tiles()));
+std::array<BlockCover, VisibilityTile::kBlocks> RegionDrawing::hidden_behind(int tile) const {
+  std::array<BlockCover, VisibilityTile::kBlocks> result;
+  const std::size_t first = static_cast<std::size_t>(tile) * result.size();
+  // The covers do not know of large triangles.
+  const bool is_known = scratch_.deferred.large.of_tile(tile).empty();
+  for (std::size_t block = 0; block < result.size(); ++block) {
+    const BlockCover& others = hidden_behind_[first + block];
+    if (others.may_hide(is_known ? covers_[first + block].farthest : kEmptyCode))
+      result[block] = others;
+  }
+  return result;
 }
 
 void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) {
-  constexpr std::size_t kBlocks = VisibilityTile::kBlocks;
   if (hidden_behind_.empty()) return;
-  const auto codes = std::span(hidden_behind_).subspan(static_cast<std::size_t>(tile) * kBlocks);
+  const auto covers = hidden_behind(tile);
   bool any = false;
-  for (int block = 0; block < VisibilityTile::kBlocks; ++block)
-    if (codes[block] != kEmptyCode) any |= visibility.drop_behind(block, codes[block]);
+  for (std::size_t block = 0; block < covers.size(); ++block)
+    any |= raster::drop_hidden(covers[block], static_cast<int>(block), visibility);
   scratch_.partly_hidden[static_cast<std::size_t>(tile)] = any ? 1 : 0;
 }
 

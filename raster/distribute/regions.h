@@ -1,11 +1,13 @@
 // One rank's rendering: pieces of a scene into regions of the frame.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "parallel/function_ref.h"
+#include "raster/distribute/block_cover.h"
 #include "raster/render.h"
 #include "raster/shading/tile_colours.h"
 #include "raster/shading/tile_view.h"
@@ -99,14 +101,19 @@ class RegionDrawing {
   // Whether nothing at or behind `depth` can be seen any more in these samples, as far as is known
   // at a glance.
   bool hides(const geometry::Rect& samples, float depth) const;
-  // By tile of the screen and block in it, how far all that is drawn by now is at most, and that
-  // nothing behind such depths need be shaded, since it is hidden: see FrameTiles. Not for drawings
-  // in which anything is blended or was shaded already.
-  std::vector<std::int32_t> farthest_of_blocks() const {
-    return scratch_.tiles.farthest_of_blocks(task_.screen);
+  // By tile of the screen and block in it, what all that is drawn by now hides; and that nothing
+  // hidden by such covers need be shaded. To be called after all was drawn. Not for drawings in
+  // which anything is blended or was shaded already.
+  std::span<const BlockCover> find_covers() {
+    return covers_ = covers_of(scratch_.tiles, task_.screen);
   }
-  void hide_behind(std::vector<std::int32_t>&& codes);
-  std::span<const std::int32_t> hidden_behind() const { return hidden_behind_; }
+  void hide_behind(std::span<const BlockCover> others) {
+    hidden_behind_.assign(others.begin(), others.end());
+    scratch_.partly_hidden.resize(static_cast<std::size_t>(task_.screen.tiles()));
+  }
+  // Those of a tile's blocks that may hide anything that it shows. REQUIRES: drawing has ended;
+  // hide_behind was called.
+  std::array<BlockCover, VisibilityTile::kBlocks> hidden_behind(int tile) const;
   // Puts into Scratch::seen, as tiles are finished, of one in 64 of their pixels the number of the
   // triangle that is seen there, if any, and of those that are blended before it, in any order.
   void sample_seen();
@@ -151,7 +158,7 @@ class RegionDrawing {
   MeshHolder* const holder_;  // of tiles that are finished; null: what was drawn is there
   DrawIntoTiles into_tiles_;
   DrawCosts costs_;
-  std::vector<std::int32_t> hidden_behind_;  // empty: nothing is known
+  std::vector<BlockCover> covers_, hidden_behind_;  // empty: nothing is known
   bool samples_seen_ = false;
   std::size_t finished_ = 0;  // jobs
   RegionCounts counts_;       // of these, from when drawing ended

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 
-#include "parallel/parallel_for.h"
-
 namespace delray::raster {
 namespace {
 
@@ -76,20 +74,6 @@ VisibilityTile& FrameTiles::open(int tile) {
     places_[tile].state.store(State::drawn, std::memory_order_release);
   }
   return tiles_[tile];
-}
-
-std::vector<std::int32_t> FrameTiles::farthest_of_blocks(const Screen& screen) const {
-  constexpr std::size_t kBlocks = VisibilityTile::kBlocks;
-  const auto tiles = static_cast<std::size_t>(screen.tiles());
-  std::vector<std::int32_t> codes(tiles * kBlocks, kEmptyCode);
-  constexpr std::size_t kGrain = 16;  // tiles
-  parallel::parallel_for(0, tiles, kGrain, [&](std::size_t i) {
-    const auto index = static_cast<int>(i);
-    if (!is_drawn_in(index) || places_[i].rect != screen.tile(index)) return;
-    for (int block = 0; block < VisibilityTile::kBlocks; ++block)
-      codes[i * kBlocks + static_cast<std::size_t>(block)] = tiles_[i].farthest_now(block);
-  });
-  return codes;
 }
 
 // Coordinates are not negative.

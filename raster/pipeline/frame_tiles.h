@@ -61,10 +61,6 @@ class FrameTiles {
   // known at a glance.
   bool is_hidden(const geometry::Rect& pixels, float depth) const;
 
-  // By tile of the screen and block in it: the code of the farthest depth of what is drawn now;
-  // kEmptyCode where anything is empty, or less than the tile is drawn. O(pixels), parallel.
-  std::vector<std::int32_t> farthest_of_blocks(const Screen& screen) const;
-
   // What is known of the blocks that the pixels touch; nothing if they are many, or if what is not
   // behind `depth` is not hidden in any of them.
   void look_around(const geometry::Rect& pixels, float depth, DepthsAround& result) const;

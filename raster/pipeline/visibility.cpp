@@ -356,35 +356,14 @@ void VisibilityTile::clear(const geometry::Rect& rect) {
   since_refresh = 0;
 }
 
-namespace {
-
-// Calls f(key) for each pixel of a block.
-template <class Keys, class F>
-void for_each_key(Keys& key, int block, F&& f) {
-  const int x = block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
-  const int y = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight;
-  for (int j = 0; j < VisibilityTile::kBlockHeight; ++j) {
-    for (int i = 0; i < VisibilityTile::kBlockWidth; ++i) f(key[(y + j) * kTileSize + x + i]);
-  }
-}
-
-}  // namespace
-
 std::int32_t VisibilityTile::farthest_now(int block) const {
   if ((stale >> block & 1) == 0) return farthest_of(block);
+  const std::int64_t* keys =
+      key + block / kBlocksX * kBlockHeight * kTileSize + block % kBlocksX * kBlockWidth;
   std::int64_t last = std::numeric_limits<std::int64_t>::min();
-  for_each_key(key, block, [&](std::int64_t here) { last = std::max(last, here); });
+  for (int j = 0; j < kBlockHeight; ++j, keys += kTileSize)
+    last = std::max(last, *std::max_element(keys, keys + kBlockWidth));
   return static_cast<std::int32_t>(last >> 32);
-}
-
-bool VisibilityTile::drop_behind(int block, std::int32_t code) {
-  std::int64_t dropped = 0;
-  for_each_key(key, block, [&](std::int64_t& here) {
-    const std::int64_t kept = static_cast<std::int32_t>(here >> 32) > code ? kEmptyKey : here;
-    dropped |= kept ^ here;
-    here = kept;
-  });
-  return dropped != 0;
 }
 
 void rasterize(const Screen& screen, const geometry::Rect& rect,

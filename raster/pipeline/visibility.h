@@ -69,8 +69,6 @@ struct VisibilityTile {
   }
   // The code of the farthest depth in a block as it is now.
   std::int32_t farthest_now(int block) const;
-  // Empties pixels of a block that are farther than this; whether there are any.
-  bool drop_behind(int block, std::int32_t code);
 
   std::int32_t farthest_of(int block) const {
     return std::atomic_ref(const_cast<std::int32_t&>(farthest[block]))

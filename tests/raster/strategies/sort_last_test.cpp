@@ -215,7 +215,7 @@ scenes::Scene scene_with_all_in_one_half() {
   return scene;
 }
 
-// Two walls, one for each rank: the farther one is hidden, and all but its rim is not shaded.
+// Two walls, one for each rank: the farther one is hidden, and next to nothing of it is shaded.
 TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
   scenes::Scene scene = wall();
   glm::mat4x3 behind(1.0F);
@@ -238,7 +238,7 @@ TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
     }
     EXPECT_TRUE(same_bytes(pictures[0], pictures[1]));
     EXPECT_GT(statistics[0].shaded, 30000U);
-    EXPECT_LT(statistics[1].shaded, statistics[0].shaded * 6 / 5) << front_first;
+    EXPECT_LE(statistics[1].shaded, statistics[0].shaded * 101 / 100) << front_first;
   }
 }
 
