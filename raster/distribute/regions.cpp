@@ -20,8 +20,15 @@
 namespace delray::raster {
 namespace {
 
-// Every eighth pixel of every eighth row of a tile, in each such row others than in the one before.
-bool is_sample(int x, int y) { return y % 8 == 0 && (x + y / 8 * 3) % 8 == 0; }
+// Samples are every eighth pixel of every eighth row of a tile, from this one of the row on: in
+// each such row others than in the one before.
+constexpr int kSampleStep = 8;
+int sample_column(int y) { return y / kSampleStep * 5 % kSampleStep; }
+// The first from `at` on that is so many after a multiple of the step.
+int next_sample(int at, int after) {
+  return at + (after - at % kSampleStep + kSampleStep) % kSampleStep;
+}
+bool is_sample(int x, int y) { return y % kSampleStep == 0 && x % kSampleStep == sample_column(y); }
 
 }  // namespace
 
@@ -312,9 +319,9 @@ void RegionDrawing::sample_seen(const TileJob& job, const VisibilityTile* tile,
   }
   if (tile == nullptr) return;
   for (const geometry::Rect& rect : tiles_.rects_of(job)) {
-    for (int y = rect.y0 - corner.y0; y < rect.y1 - corner.y0; ++y) {
-      if (y % 8 != 0) continue;
-      for (int x = rect.x0 - corner.x0; x < rect.x1 - corner.x0; ++x)
+    for (int y = next_sample(rect.y0 - corner.y0, 0); y < rect.y1 - corner.y0; y += kSampleStep) {
+      for (int x = next_sample(rect.x0 - corner.x0, sample_column(y)); x < rect.x1 - corner.x0;
+           x += kSampleStep)
         add(tile->key[y * kTileSize + x], x, y);
     }
   }
