@@ -6,6 +6,7 @@
 
 #include "composite/coverage.h"
 #include "composite/layer.h"
+#include "composite/shown_blocks.h"
 #include "image/image.h"
 #include "image/operators.h"
 
@@ -44,6 +45,11 @@ class ImageLayer : public Layer {
   // The colour of pixels that nothing covers, {} if not set: what replaces others by nothing leaves
   // it. Those that are there already are not changed. REQUIRES: Operator::nearest; alike on ranks.
   void set_background(Colour colour) { background_ = colour; }
+
+  // What may be covered in the image, where that is known; kept up to date by what is applied.
+  // REQUIRES: no background is set.
+  void set_shown(ShownBlocks&& shown) { shown_ = std::move(shown); }
+  ShownBlocks take_shown() { return std::exchange(shown_, {}); }
 
   std::uint64_t pixels() const final { return image_.pixels(); }
   int format() const final { return static_cast<int>(operator_); }
@@ -85,12 +91,15 @@ class ImageLayer : public Layer {
   void apply_to_none(Action action, std::size_t first, std::size_t size);
 
  private:
+  // As find_covered, of pixels of which nothing is known.
+  std::uint64_t find_in_all(std::size_t begin, std::size_t end, GroupMask& mask) const;
   void prune_pixel(std::size_t pixel, const Pixels& others, std::size_t k);
 
   image::BasicImage<Colour> image_;
   Operator operator_;
   Colour background_{};
   bool forgets_depth_ = false;
+  ShownBlocks shown_;
 };
 
 extern template class ImageLayer<image::Rgba8>;

@@ -61,6 +61,26 @@ bool ImageLayer<Colour>::empty() const {
 template <class Colour>
 std::uint64_t ImageLayer<Colour>::find_covered(std::size_t begin, std::size_t end,
                                                GroupMask& mask) const {
+  if (!shown_.is_known()) return find_in_all(begin, end, mask);
+  // Block by block of the mask, of which those that may be covered are looked at together.
+  constexpr std::size_t kBlock = ShownBlocks::kPixels;
+  std::uint64_t covered = 0;
+  for (std::size_t first = begin; first < end;) {
+    std::size_t last = first;
+    while (last < end && shown_.any(last, kBlock)) last += kBlock;
+    if (last > first) {
+      GroupMask some{};
+      covered += find_in_all(first, std::min(last, end), some);
+      std::copy_n(some.begin(), (last - first) / kBlock, mask.begin() + (first - begin) / kBlock);
+    }
+    first = last + kBlock;
+  }
+  return covered;
+}
+
+template <class Colour>
+std::uint64_t ImageLayer<Colour>::find_in_all(std::size_t begin, std::size_t end,
+                                              GroupMask& mask) const {
   return operator_ != Operator::over
              ? internal::find_covered(image_.depth.span().subspan(begin, end - begin), mask)
              : internal::find_coloured(image_.colour.span().subspan(begin, end - begin), mask);
@@ -80,6 +100,7 @@ void ImageLayer<Colour>::prune_pixel(std::size_t pixel, const Pixels& others, st
 template <class Colour>
 void ImageLayer<Colour>::apply_to_all(Action action, std::size_t first, std::size_t size,
                                       const Pixels& pixels) {
+  if (shown_.is_known()) shown_.add(first, size);
   const std::span colour = image_.colour.span().subspan(first, size);
   const std::span depth = image_.depth.span().subspan(first, size);
   const std::span other(pixels.colour, size);
@@ -103,6 +124,7 @@ void ImageLayer<Colour>::apply_to_all(Action action, std::size_t first, std::siz
 template <class Colour>
 void ImageLayer<Colour>::apply_to_covered(Action action, std::size_t first, std::size_t size,
                                           const GroupMask& mask, const Pixels& covered) {
+  if (shown_.is_known()) shown_.add(first, mask);
   Colour* const colour = image_.colour.data() + first;
   float* const depth = image_.depth.data() + first;
   if (action == Action::replace) {

@@ -115,11 +115,10 @@ std::span<const TileJob> OthersDepths::finish_meanwhile(FinishTile finish_tile,
 
 template <class Colour>
 image::BasicImage<Colour> OthersDepths::end_samples_meanwhile(geometry::Rect& seen) {
-  const RenderOptions& options = rank_.options;
-  auto image = rank_.take_image<Colour>(options.width, options.height);
-  const Window<Colour> window = window_of(image);
+  ImageOfTiles<Colour> tiles(rank_);
+  image::BasicImage<Colour>& image = tiles.image();
   const auto finish_tile = [&](std::span<const geometry::Rect> rects, TileView& tile) {
-    for (const geometry::Rect& rect : rects) tile.shade(rect, window);
+    tiles.store(rects, tile);
   };
   const std::vector<std::uint8_t>& hidden = rank_.scratch.partly_hidden;
   const bool is_known = hidden.size() == static_cast<std::size_t>(rank_.screen.tiles());
@@ -144,7 +143,7 @@ image::BasicImage<Colour> OthersDepths::end_samples_meanwhile(geometry::Rect& se
   done.fragments -= dropped;
   done.shaded -= dropped;
   rank_.count(done);
-  return image;
+  return tiles.take();
 }
 
 template image::Image8 OthersDepths::end_samples_meanwhile(geometry::Rect&);

@@ -142,8 +142,15 @@ void RankContext::render_pixels(const DrawList& list, std::span<const geometry::
 template <class Colour>
 image::BasicImage<Colour> RankContext::end_samples(RegionDrawing& drawing) {
   const int n = options.supersampling;
+  if (n == 1) {
+    ImageOfTiles<Colour> tiles(*this);
+    end(drawing,
+        [&](std::span<const geometry::Rect> rects, TileView& tile) { tiles.store(rects, tile); });
+    return tiles.take();
+  }
   image::BasicImage<Colour> image =
       take_image<Colour>(options.width * samples_per_pixel(), options.height);
+  scratch.shown = {};
   end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
     store_samples(rects, tile, n, image);
   });
@@ -239,12 +246,49 @@ Picture RankContext::gather(const loadbalance::Partition& partition,
 
 template <class Colour>
 image::BasicImage<Colour> RankContext::take_image(int width, int height) {
+  const void* const shown_in = std::exchange(scratch.shown_in, nullptr);
   if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
-      spare != nullptr && spare->width == width && spare->height == height)
+      spare != nullptr && spare->width == width && spare->height == height) {
+    if (shown_in != spare->colour.data()) scratch.shown = {};
     return std::exchange(*spare, {});
+  }
   scratch.taken = nullptr;
+  scratch.shown = {};
   return image::BasicImage<Colour>(width, height);
 }
+
+template <class Colour>
+ImageOfTiles<Colour>::ImageOfTiles(RankContext& rank)
+    : rank_(rank),
+      image_(rank.take_image<Colour>(rank.options.width, rank.options.height)),
+      shown_(image_.pixels()) {}
+
+template <class Colour>
+void ImageOfTiles<Colour>::store(std::span<const geometry::Rect> rects, TileView& tile) {
+  const Window<Colour> window = window_of(image_);
+  const composite::ShownBlocks& before = rank_.scratch.shown;
+  for (const geometry::Rect& rect : rects) {
+    const bool is_empty = tile.empty();
+    if (!is_empty) tile.shade(rect, window);
+    const auto width = static_cast<std::size_t>(rect.width());
+    for (int y = rect.y0; y < rect.y1 && width > 0; ++y) {
+      const std::size_t at = window.at(rect.x0, y);
+      if (!is_empty)
+        shown_.add(at, width);
+      else if (!before.is_known() || before.any(at, width))
+        clear_pixels({rect.x0, y, rect.x1, y + 1}, window);
+    }
+  }
+}
+
+template <class Colour>
+image::BasicImage<Colour> ImageOfTiles<Colour>::take() {
+  rank_.scratch.shown = std::move(shown_);
+  return std::move(image_);
+}
+
+template class ImageOfTiles<image::Rgba8>;
+template class ImageOfTiles<image::RgbaF>;
 
 template void RankContext::end_pixels(RegionDrawing&, image::Image8&);
 template void RankContext::end_pixels(RegionDrawing&, image::ImageF&);

@@ -111,9 +111,29 @@ struct RankContext {
   // depths; of size 0 elsewhere. Of displays their pictures, in `shown`. Collective.
   template <class Colour>
   Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);
-  // An image of any content; the spare one if that fits.
+  // An image of any content; the spare one if that fits. Scratch::shown is of it.
   template <class Colour>
   image::BasicImage<Colour> take_image(int width, int height);
+};
+
+// An image of the frame, one sample per pixel, into which tiles are stored. What was left clear in
+// the same memory by the frame before is not cleared again.
+template <class Colour>
+class ImageOfTiles {
+ public:
+  explicit ImageOfTiles(RankContext& rank);
+
+  // To be called for each tile once; several threads may.
+  void store(std::span<const geometry::Rect> rects, TileView& tile);
+
+  image::BasicImage<Colour>& image() { return image_; }
+  // After all tiles. Scratch::shown is of it.
+  image::BasicImage<Colour> take();
+
+ private:
+  RankContext& rank_;
+  image::BasicImage<Colour> image_;
+  composite::ShownBlocks shown_;
 };
 
 // Parts of regions in a tile, rects in samples, into a window of pixels: n x n samples averaged.

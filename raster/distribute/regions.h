@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "composite/shown_blocks.h"
 #include "parallel/function_ref.h"
 #include "raster/distribute/block_cover.h"
 #include "raster/render.h"
@@ -23,6 +24,10 @@ struct Scratch {
   std::vector<std::uint8_t> clear_tiles, empty_tiles;
   const void* clear_in = nullptr;
   const void* taken = nullptr;
+  // The same by blocks of pixels, of the picture whose colours are at `shown_in`; where that is
+  // null, of the one that was taken or made last.
+  composite::ShownBlocks shown;
+  const void* shown_in = nullptr;
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<std::unique_ptr<TileMemory>> tile_memory;  // by worker

@@ -220,14 +220,13 @@ class Steps final : public FrameSteps {
       rank_.communicator.mark(comm::Phase::compose, 0);  // ranks that do more than count do not
       layer_ = mask_of(rank_, image);
     } else if (finishes_early()) {
-      layer_ = composite::find_codec(rank_.options.codec)
-                   ->make(others_->end_samples_meanwhile<Colour>(seen_));
+      layer_ = layer_of(others_->end_samples_meanwhile<Colour>(seen_));
+    } else if (is_much(seen_)) {
+      layer_ = layer_of(rank_.end_samples<Colour>(*drawing_));
     } else {
       // The part is copied in the end.
-      is_part_ = !is_much(seen_);
-      layer_ = composite::find_codec(rank_.options.codec)
-                   ->make(is_part_ ? rank_.end_part<Colour>(*drawing_, seen_)
-                                   : rank_.end_samples<Colour>(*drawing_));
+      is_part_ = true;
+      layer_ = codec().make(rank_.end_part<Colour>(*drawing_, seen_));
     }
     measure();
     drop_drawing();
@@ -328,6 +327,15 @@ class Steps final : public FrameSteps {
                                           primitives_of(list_, rank_.scratch.seen));
   }
 
+  const composite::Codec& codec() const { return *composite::find_codec(rank_.options.codec); }
+  // With what is known of the image.
+  std::unique_ptr<composite::Layer> layer_of(image::BasicImage<Colour>&& image) {
+    std::unique_ptr<composite::Layer> layer = codec().make(std::move(image));
+    dynamic_cast<composite::ImageLayer<Colour>&>(*layer).set_shown(
+        std::exchange(rank_.scratch.shown, {}));
+    return layer;
+  }
+
   std::vector<Piece> pieces() {
     if (has_cells()) {
       SceneCells& cells = rank_.memory.cells;
@@ -363,7 +371,13 @@ class Steps final : public FrameSteps {
       make_distances(part);
       return composite::gather(rank_.communicator, std::move(part), rank_.root);
     });
+    composite::ShownBlocks shown =
+        dynamic_cast<composite::ImageLayer<Colour>&>(*part.layer).take_shown();
     image::BasicImage<Colour> image = composite::take_image<Colour>(std::move(part));
+    if (!rank_.in_steps && !is_part_) {
+      rank_.scratch.shown = std::move(shown);
+      rank_.scratch.shown_in = image.colour.data();
+    }
     if (rank_.number() == rank_.root) {
       if (is_part_) return rank_.picture_around(seen_, std::move(image));
       return image;

@@ -134,6 +134,71 @@ TYPED_TEST(ActiveLayers, LeaveTheBytesThatDenseOnesLeave) {
   });
 }
 
+template <class Colour>
+ShownBlocks shown_in(const BasicImage<Colour>& image) {
+  ShownBlocks shown(image.pixels());
+  for (std::size_t i = 0; i < image.pixels(); ++i)
+    if (image.depth[i] != image::kEmptyDepth) shown.add(i, 1);
+  return shown;
+}
+
+// Layers that know what may be shown do the same, and know it afterwards.
+TYPED_TEST(ActiveLayers, NeedNotLookAtWhatIsKnownToBeClear) {
+  constexpr int kPixels = 9001;
+  constexpr PixelRange kRanges[] = {{0, kPixels}, {13, 8205}, {4096, 8192}, {8999, 9001}};
+  const std::vector<Shape> all = shapes();
+  for (const Shape& mine : all) {
+    const BasicImage<TypeParam> own = picture<TypeParam>(kPixels, mine.covered, 1);
+    for (const Shape& others : all) {
+      const BasicImage<TypeParam> other = picture<TypeParam>(kPixels, others.covered, 2);
+      for (const PixelRange& range : kRanges) {
+        SCOPED_TRACE(std::string(others.name) + " onto " + mine.name);
+        ActiveLayer<TypeParam> plain(copy(own)), knowing(copy(own)), sender(copy(other));
+        knowing.set_shown(shown_in(own));
+        const comm::Buffer sent = sender.encode(range);
+        for (int step = 0; step < 3; ++step) {
+          const comm::Buffer a = plain.encode(range), b = knowing.encode(range);
+          ASSERT_TRUE(std::ranges::equal(a.as<std::byte>(), b.as<std::byte>())) << step;
+          ASSERT_EQ(knowing.empty(), plain.empty());
+          if (step == 0) {
+            plain.merge(range, sent, Side::higher), knowing.merge(range, sent, Side::higher);
+          } else if (step == 1) {
+            plain.replace(range, sent), knowing.replace(range, sent);
+          }
+          ASSERT_TRUE(same(plain.image(), knowing.image())) << step;
+        }
+        const ShownBlocks shown = knowing.take_shown();
+        for (std::size_t i = 0; i < kPixels; ++i) {
+          if (plain.image().depth[i] != image::kEmptyDepth) {
+            ASSERT_TRUE(shown.any(i, 1)) << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ShownBlocks, AreOfSixtyFourPixels) {
+  EXPECT_FALSE(ShownBlocks().is_known());
+  ShownBlocks shown(1000);
+  EXPECT_TRUE(shown.is_known());
+  EXPECT_FALSE(shown.any(0, 1000));
+  shown.add(130, 1);
+  EXPECT_TRUE(shown.any(128, 1));
+  EXPECT_TRUE(shown.any(0, 129));
+  EXPECT_FALSE(shown.any(0, 128));
+  EXPECT_FALSE(shown.any(192, 808));
+  shown.add(255, 2);
+  EXPECT_TRUE(shown.any(192, 1));
+  EXPECT_TRUE(shown.any(300, 64));
+  EXPECT_FALSE(shown.any(320, 1000 - 320));
+  GroupMask mask{};
+  mask[1] = 1;
+  shown.add(500, mask);
+  EXPECT_TRUE(shown.any(564, 1));
+  EXPECT_FALSE(shown.any(500, 12));
+}
+
 TYPED_TEST(ActiveLayers, AreEmptyWhenNothingIsCovered) {
   BasicImage<TypeParam> image(100, 100);
   clear(image);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -363,6 +364,55 @@ TEST(SortLast, SharesOutWorkByTheFramesBefore) {
             EXPECT_LT(share, 1.25) << scheme << ranks;
           }
           renderer.recycle(std::move(result.picture));
+        }
+      });
+    }
+  }
+}
+
+// What was drawn before, here or by others, is gone where nothing is drawn now, also in memory that
+// ranks know and do not clear.
+TEST(SortLast, LeavesNothingOfFramesBefore) {
+  // Side by side, one for each rank; they fill more than half of the picture from most places.
+  scenes::Scene scene = wall();
+  scene.instances.clear();
+  for (const float x : {-0.5F, 0.0F, 0.5F}) {
+    glm::mat4x3 narrow(1.0F);
+    narrow[0].x = 0.4F;
+    narrow[3].x = x;
+    scene.instances.push_back({0, narrow});
+  }
+  std::vector<scenes::Camera> cameras(6, camera_before_wall());
+  for (std::size_t i = 1; i < 5; ++i) {
+    const float moved = 0.25F * static_cast<float>(i) - 0.7F;
+    cameras[i].eye.x += moved;
+    cameras[i].at.x += moved;
+  }
+  cameras[5].at = cameras[5].eye * 2.0F;  // nothing is seen
+  RenderOptions options;
+  options.width = 251;
+  options.height = 390;
+  std::vector<Picture> expected;
+  comm::run_threads(1, 1, [&](comm::Communicator& alone) {
+    for (const scenes::Camera& camera : cameras)
+      expected.push_back(render(alone, scene, camera, options).picture);
+  });
+  for (const char* scheme : {"binary-swap", "direct-send", "centralized", "tiles", "pipeline"}) {
+    for (const char* codec : {"active", "dense"}) {
+      options.scheme = scheme;
+      options.codec = codec;
+      comm::run_threads(3, 1, [&](comm::Communicator& communicator) {
+        Renderer renderer(scene);
+        std::mt19937 random(7);  // the same on all ranks
+        for (int frame = 0; frame < 16; ++frame) {
+          const std::size_t camera = random() % cameras.size();
+          RenderOptions now = options;
+          now.strategy = random() % 4 == 0 ? "sort-first" : "sort-last";
+          Result result = renderer.render(communicator, cameras[camera], now);
+          if (communicator.rank() != 0) continue;
+          ASSERT_TRUE(same_bytes(result.picture, expected[camera]))
+              << scheme << ", " << codec << ", frame " << frame << ", camera " << camera;
+          if (frame % 5 != 4) renderer.recycle(std::move(result.picture));
         }
       });
     }
