@@ -1,5 +1,4 @@
-// Runs of pixels in which nothing is to be changed are not written to. Degenerate: many small
-// rectangles are shared out to threads as they are, a few large ones by rows.
+// Runs of pixels in which nothing is to be changed are not written to.
 #include "raster/distribute/distances.h"
 
 #include <algorithm>
@@ -37,34 +36,14 @@ void to_distances(std::span<float> depths, const scenes::View& view) {
 }
 
 template <class Colour>
-void to_distances(image::BasicImage<Colour>& image, std::span<const geometry::Rect> rects,
+void to_distances(const geometry::Rect& rect, const Window<Colour>& window,
                   const scenes::View& view) {
-  std::uint64_t pixels = 0;
-  for (const geometry::Rect& rect : rects) pixels += static_cast<std::uint64_t>(rect.area());
-  if (pixels == 0) return;
-  const auto convert_row = [&](const geometry::Rect& rect, int y) {
-    const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(rect.x0);
-    convert(image.depth.data() + at, static_cast<std::size_t>(rect.width()), view);
-  };
-  const std::uint64_t mean = pixels / rects.size();
-  if (mean < kGrain) {
-    const std::size_t together = std::max<std::size_t>(kGrain / std::max<std::size_t>(mean, 1), 1);
-    parallel::parallel_for(0, rects.size(), together, [&](std::size_t i) {
-      for (int y = rects[i].y0; y < rects[i].y1; ++y) convert_row(rects[i], y);
-    });
-    return;
-  }
-  for (const geometry::Rect& rect : rects) {
-    if (rect.empty()) continue;
-    const auto width = static_cast<std::size_t>(rect.width());
-    parallel::parallel_for(
-        0, static_cast<std::size_t>(rect.height()), std::max<std::size_t>(kGrain / width, 1),
-        [&](std::size_t row) { convert_row(rect, rect.y0 + static_cast<int>(row)); });
-  }
+  if (rect.empty()) return;
+  for (int y = rect.y0; y < rect.y1; ++y)
+    convert(window.depth + window.at(rect.x0, y), static_cast<std::size_t>(rect.width()), view);
 }
 
-template void to_distances(image::Image8&, std::span<const geometry::Rect>, const scenes::View&);
-template void to_distances(image::ImageF&, std::span<const geometry::Rect>, const scenes::View&);
+template void to_distances(const geometry::Rect&, const Window<image::Rgba8>&, const scenes::View&);
+template void to_distances(const geometry::Rect&, const Window<image::RgbaF>&, const scenes::View&);
 
 }  // namespace delray::raster

@@ -5,6 +5,7 @@
 
 #include "geometry/rect.h"
 #include "image/image.h"
+#include "raster/pipeline/window.h"
 #include "scenes/camera.h"
 
 namespace delray::raster {
@@ -13,9 +14,9 @@ namespace delray::raster {
 // empty pixels, and those that have distances already, stay. O(pixels), parallel.
 void to_distances(std::span<float> depths, const scenes::View& view);
 
-// The same of disjoint rectangles of an image.
+// The same of the pixels of a window, by the calling thread.
 template <class Colour>
-void to_distances(image::BasicImage<Colour>& image, std::span<const geometry::Rect> rects,
+void to_distances(const geometry::Rect& rect, const Window<Colour>& window,
                   const scenes::View& view);
 
 }  // namespace delray::raster

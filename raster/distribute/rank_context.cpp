@@ -9,7 +9,6 @@
 #include <cassert>
 
 #include "comm/collectives.h"
-#include "raster/distribute/distances.h"
 #include "raster/distribute/gather_regions.h"
 #include "raster/distribute/primitive_shares.h"
 #include "raster/pipeline/samples.h"
@@ -222,12 +221,6 @@ Picture RankContext::gather(const loadbalance::Partition& partition,
                             image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();
-  if (!depths_are_distances()) {
-    std::vector<geometry::Rect> own;
-    for (const loadbalance::Region& region : partition.regions)
-      if (region.owner == number()) own.push_back(region.rect);
-    to_distances(image, own, screen.view);
-  }
   if (options.displays.empty()) {
     ImageTiles tiles{kTileSize / options.supersampling, screen.tiles_x, {}, {}};
     // Unless somebody else wrote into the image.

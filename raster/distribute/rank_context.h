@@ -56,6 +56,8 @@ struct RankContext {
   std::vector<int> rank_of_owner = {};
   // In steps, of which only the last may use the communicator: work is reported then.
   bool in_steps = false;
+  // Whether ranks may see different things at the same pixel.
+  bool composites = true;
   // The rank that gets what is composited, a frame or a display of it.
   int root = 0;
   std::vector<Picture> shown = {};  // of this rank's displays, in their order
@@ -69,8 +71,8 @@ struct RankContext {
   // The primitives that this rank has if the first `holders` ranks have them all. REQUIRES: these
   // are all ranks where the scene is in parts.
   std::pair<std::uint64_t, std::uint64_t> own_primitives(int holders) const;
-  // Whether depths are distances at once: those of a single rank, which are not composited.
-  bool depths_are_distances() const { return ranks() == 1; }
+  // Whether depths are distances at once, since none are compared between ranks.
+  bool depths_are_distances() const { return ranks() == 1 || !composites; }
   geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
   int samples_per_pixel() const { return options.supersampling * options.supersampling; }
 
@@ -107,7 +109,7 @@ struct RankContext {
   template <class Colour>
   image::BasicImage<Colour> picture_around(const geometry::Rect& part,
                                            image::BasicImage<Colour>&& image);
-  // The picture on rank 0, of every region from its owner's image, with distances instead of
+  // The picture on rank 0, of every region from its owner's image, which has distances instead of
   // depths; of size 0 elsewhere. Of displays their pictures, in `shown`. Collective.
   template <class Colour>
   Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);

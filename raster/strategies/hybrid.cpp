@@ -10,6 +10,7 @@
 #include "comm/collectives.h"
 #include "loadbalance/region_index.h"
 #include "parallel/parallel_for.h"
+#include "raster/distribute/distances.h"
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/hybrid_shares.h"
 #include "raster/distribute/others_depths.h"
@@ -84,6 +85,7 @@ class Drawing {
           append(tile, part, {}, kept_[k]);
         } else {
           tile.shade_pixels(part, samples(), window_);
+          if (!tile.empty()) to_distances(pixels_of(part, samples()), window_, view());
         }
       }
     };
@@ -124,9 +126,12 @@ class Drawing {
       }
     }
     parallel::parallel_for(0, contested_.size(), 1, [&](std::size_t k) {
-      if (!contested_[k] || (merges_into_image() && seen[k].empty())) return;
+      if (!contested_[k]) return;
       if (!merges_into_image()) seen[k].push_back(span_of(static_cast<int>(k), kept_[k]));
-      compose_tile(seen[k], k);
+      const Rect rect = geometry::intersection(rank_.screen.tile(static_cast<int>(k)),
+                                               samples_of(own_, samples()));
+      if (!seen[k].empty()) compose_tile(seen[k], rect, k);
+      to_distances(pixels_of(rect, samples()), window_, view());
     });
     rank_.communicator.work(comm::Work::pixels_composited, composited);
   }
@@ -140,6 +145,7 @@ class Drawing {
   };
 
   int samples() const { return rank_.options.supersampling; }
+  const scenes::View& view() const { return rank_.screen.view; }
 
   void contest(const Rect& rect) {
     if (rect.empty()) return;
@@ -181,9 +187,7 @@ class Drawing {
     }
   }
 
-  void compose_tile(std::span<const Span> seen, std::size_t k) {
-    const Rect rect =
-        geometry::intersection(rank_.screen.tile(static_cast<int>(k)), samples_of(own_, samples()));
+  void compose_tile(std::span<const Span> seen, const Rect& rect, std::size_t k) {
     if constexpr (!kTransparent) {
       if (merges_into_image()) {
         merge_nearest(seen, rect, out_.list, numbers_of(k), window_);

@@ -111,6 +111,7 @@ Picture render_pack(RankContext& rank, PackedScene& packed) {
 }  // namespace
 
 Picture sort_first(RankContext& rank) {
+  rank.composites = false;
   if (PackedScene* const packed = rank.prepared.packed) {
     return rank.options.float_pixels ? render_pack<image::RgbaF>(rank, *packed)
                                      : render_pack<image::Rgba8>(rank, *packed);

@@ -377,6 +377,7 @@ Picture render(RankContext& rank) {
 }  // namespace
 
 Picture sort_middle(RankContext& rank) {
+  rank.composites = false;
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "parallel/arena.h"
 #include "raster/pipeline/screen.h"
 
 namespace delray::raster {
@@ -46,28 +45,24 @@ TEST(Distances, AreMadeOfDepthsAndOfNothingElse) {
   }
 }
 
-// Large and small rectangles, also empty ones, and nothing beside them.
+// Large and small rectangles of a window, also empty ones, and nothing beside them.
 TEST(Distances, AreMadeInRectangles) {
   const scenes::View view = view_of(false);
-  const std::vector<std::vector<geometry::Rect>> cases = {
-      {},
-      {{0, 0, 0, 0}},
-      {{0, 0, 400, 300}},
-      {{10, 20, 390, 280}, {0, 0, 10, 10}, {5, 5, 5, 200}},
-      {{1, 1, 2, 2}, {399, 299, 400, 300}, {7, 0, 8, 300}}};
-  for (const auto& rects : cases) {
+  for (const geometry::Rect& rect : {geometry::Rect{0, 0, 0, 0},
+                                     {0, 0, 400, 300},
+                                     {10, 20, 390, 280},
+                                     {5, 5, 5, 200},
+                                     {399, 299, 400, 300},
+                                     {7, 0, 8, 300}}) {
     image::Image8 image(400, 300);
     const std::vector<float> depths = depths_of(image.pixels());
     std::copy(depths.begin(), depths.end(), image.depth.data());
-    parallel::Arena arena(3);
-    arena.execute([&] { to_distances(image, rects, view); });
+    to_distances(rect, window_of(image), view);
     std::size_t i = 0;
     for (int y = 0; y < 300; ++y) {
       for (int x = 0; x < 400; ++x, ++i) {
-        bool is_in = false;
-        for (const geometry::Rect& rect : rects) is_in |= rect.contains(x, y);
         ASSERT_EQ(image.depth.data()[i],
-                  is_in && depths[i] < 0 ? distance_of(depths[i], view) : depths[i])
+                  rect.contains(x, y) && depths[i] < 0 ? distance_of(depths[i], view) : depths[i])
             << x << ", " << y;
       }
     }
