@@ -49,17 +49,29 @@ bool is_in(std::span<const PrimitiveRange> ranges, std::uint64_t primitive) {
   return after != ranges.begin() && primitive < std::prev(after)->end;
 }
 
-// Whether the first opaque surface at some sample of `rect` is of such a primitive.
-bool shows_any(const TileView& tile, const geometry::Rect& rect,
-               std::span<const PrimitiveRange> ranges) {
-  if (ranges.empty()) return false;
-  for (int y = rect.y0; y < rect.y1; ++y) {
+// The tile without what `rect` shows of such primitives; null where that is nothing. Valid until
+// the thread's next call.
+const VisibilityTile* without(const TileView& tile, const geometry::Rect& rect,
+                              std::span<const PrimitiveRange> ranges) {
+  static thread_local VisibilityTile rest;
+  bool any = false;
+  std::uint32_t last = kNothing;
+  bool drops = false;  // the last
+  for (int y = rect.y0; y < rect.y1 && !ranges.empty(); ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::uint32_t number = tile.opaque_number(x, y);
-      if (number != kNothing && is_in(ranges, tile.frame().list.primitive_of(number))) return true;
+      if (number == kNothing) continue;
+      if (number != last) {
+        last = number;
+        drops = is_in(ranges, tile.frame().list.primitive_of(number));
+      }
+      if (!drops) continue;
+      if (!any) std::copy_n(tile.opaque()->key, kTilePixels, rest.key);
+      any = true;
+      rest.key[position_of(x, y)] = kEmptyKey;
     }
   }
-  return false;
+  return any ? &rest : nullptr;
 }
 
 // By position of a tile; null where nothing is seen.
@@ -99,20 +111,15 @@ void append_surfaces(TileView& tile, const geometry::Rect& rect,
 template <class Colour>
 void append_opaque(TileView& tile, const geometry::Rect& rect,
                    std::span<const PrimitiveRange> passed_over, TileFragments<Colour>& seen) {
-  const DrawList& list = tile.frame().list;
   if (tile.empty()) return;
-  if (shows_any(tile, rect, passed_over)) {
-    // Surfaces that are passed over need not be shaded.
-    tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
-      const std::uint64_t primitive = list.primitive_of(number_of(keys.front()));
-      if (is_in(passed_over, primitive)) return;
-      Colour colour;
-      composite::store(tile.colour(number_of(keys.front()), x, y), colour);
-      seen.positions.push_back(position_of(x, y));
-      seen.fragments.push_back(fragment_of(colour, depth_of(keys.front()), primitive));
-    });
+  // Surfaces that are passed over need not be shaded.
+  if (const VisibilityTile* const rest = without(tile, rect, passed_over)) {
+    TileView part = tile.of_part(*rest);
+    append_opaque(part, rect, {}, seen);
+    tile.count(part);
     return;
   }
+  const DrawList& list = tile.frame().list;
   const Window<Colour> window = tile_window<Colour>(rect);
   tile.shade(rect, window);
   const std::size_t most = seen.fragments.size() + static_cast<std::size_t>(rect.area());

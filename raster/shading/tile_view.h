@@ -58,7 +58,16 @@ class TileView {
            TileMemory& memory)
       : frame_(frame), tile_(tile), shaded_(shaded), memory_(memory) {}
 
+  // Of the same tile with a part of what this one shows.
+  TileView of_part(const VisibilityTile& part) const { return {frame_, &part, shaded_, memory_}; }
+  void count(const TileView& part) {
+    shown_ += part.shown_;
+    shaded_now_ += part.shaded_now_;
+  }
+
   const FrameShading& frame() const { return frame_; }
+  // What is opaque; null where nothing is.
+  const VisibilityTile* opaque() const { return tile_; }
   SeenTriangles& seen() { return memory_.seen; }
   bool empty() const { return tile_ == nullptr && memory_.blended.empty(); }
   // Surfaces that were seen at the pixels asked for so far, and how many of them were shaded.
