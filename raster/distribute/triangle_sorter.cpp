@@ -30,8 +30,31 @@ Memory& memory() {
 
 }  // namespace
 
+// Of a cluster, and what is to be known for its triangles.
 void TriangleSorter::find_owners(const geometry::Rect& samples) {
-  regions_.owners_of(pixels_of(samples, rank_.options.supersampling), owners_);
+  const int n = rank_.options.supersampling;
+  near_.clear();
+  regions_.for_each_region(pixels_of(samples, n),
+                           [&](const loadbalance::Region& region, const geometry::Rect&) {
+                             near_.push_back({samples_of(region.rect, n), region.owner});
+                           });
+  std::ranges::sort(near_, {}, &loadbalance::Region::owner);
+  find_owners_near(samples);
+}
+
+// Of a part of the cluster.
+void TriangleSorter::find_owners_near(const geometry::Rect& samples) {
+  constexpr std::size_t kFew = 16;
+  if (near_.size() > kFew) {
+    regions_.owners_of(pixels_of(samples, rank_.options.supersampling), owners_);
+    return;
+  }
+  owners_.clear();
+  for (const loadbalance::Region& region : near_) {
+    if (!geometry::intersection(region.rect, samples).empty() &&
+        (owners_.empty() || owners_.back() != region.owner))
+      owners_.push_back(region.owner);
+  }
 }
 
 // The triangle is for owners_. Returns whether this rank is one of them.
@@ -81,7 +104,7 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
           });
       if (outcome == SetUpOutcome::culled) continue;
     }
-    if (!one_owner) find_owners(alone ? box : boxes.box(place));
+    if (!one_owner) find_owners_near(alone ? box : boxes.box(place));
     stays |= add_receivers(place);
   }
   return stays;

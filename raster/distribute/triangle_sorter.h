@@ -53,6 +53,7 @@ class TriangleSorter {
   };
 
   void find_owners(const geometry::Rect& samples);
+  void find_owners_near(const geometry::Rect& samples);
   bool find_receivers(const PreparedDraw& draw, const ClusterBlock& block, const Cluster& cluster);
   bool add_receivers(std::uint32_t place);
   void pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted);
@@ -60,7 +61,8 @@ class TriangleSorter {
   const RankContext& rank_;
   const RegionDrawing& drawing_;
   const loadbalance::RegionIndex& regions_;
-  std::vector<int> owners_;
+  std::vector<loadbalance::Region> near_;  // that the cluster touches, in samples, by owner
+  std::vector<int> owners_;                // of the cluster, or of the triangle at hand
   std::vector<std::uint8_t> places_;
   std::vector<Receiver> receivers_;  // the first receivers_used_; others are spare
   std::size_t receivers_used_ = 0;
