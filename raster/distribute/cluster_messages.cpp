@@ -243,6 +243,13 @@ void ClusterPacker::pack(std::span<const std::uint8_t> which, PackedClusters& to
   const bool lit = (attributes_ & kRadiances) != 0;
   const MeshCluster& mesh_cluster = block_->clusters[places_in_->part];
   const std::span<const std::uint32_t> of_mesh = block_->vertices_of(mesh_cluster);
+  // What append_section copies.
+  const scenes::Mesh& mesh = *draw_->mesh;
+  const auto prefetch = [&](std::uint32_t vertex) {
+    __builtin_prefetch(mesh.positions.data() + vertex);
+    if ((attributes_ & kNormals) != 0) __builtin_prefetch(mesh.normals.data() + vertex);
+    if ((attributes_ & kUvs) != 0) __builtin_prefetch(mesh.uvs.data() + vertex);
+  };
   for (const std::uint8_t i : which) {
     if (section_.vertices + 3 > kClusterVertices) {
       append_section(section_number++, to);
@@ -256,6 +263,7 @@ void ClusterPacker::pack(std::span<const std::uint8_t> which, PackedClusters& to
       if (vertex == kNone) {
         vertex = static_cast<std::uint16_t>(section_.vertices);
         section_.vertex[section_.vertices] = of_mesh[in_cluster[k]];
+        prefetch(of_mesh[in_cluster[k]]);
         section_.radiance[section_.vertices++] = radiance;
       }
       section_.corners[static_cast<std::size_t>(k)][section_.triangles] =
