@@ -57,10 +57,11 @@ TEST(BlockCover, HasThePartsThatAreCoveredAndTheFarthestOfAll) {
       for (int j = 0; j < kHeight; ++j) {
         for (int i = 0; i < kWidth; ++i) {
           const std::int32_t code = tile.code(block, i, j);
-          if (code != kEmptyCode)
+          if (code != kEmptyCode) {
             expected.farthest = std::max(expected.farthest, code);
-          else
+          } else {
             expected.parts &= ~(1U << (j / 2 * (kWidth / 2) + i / 2));
+          }
         }
       }
       ASSERT_EQ(cover_of(*tile, block), expected) << "seed " << seed << ", block " << block;
