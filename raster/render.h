@@ -308,8 +308,8 @@ class Renderer {
   // Gives the memory of a picture that is no longer needed to the next frame: fresh memory takes
   // longer to write to than a simple scene takes to draw.
   //
-  // REQUIRES: it is as render returned it, or somebody else's: what it shows nothing in is taken
-  // for clear.
+  // REQUIRES: it is as this renderer returned it last, or in other memory than that picture: what
+  // it shows nothing in is taken for clear.
   void recycle(Picture&& picture);
 
  private:

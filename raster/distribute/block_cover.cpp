@@ -46,15 +46,10 @@ std::uint64_t pairs_of(std::uint32_t bits) {
   return x | x << 1;
 }
 
-const std::int64_t* keys_of(const VisibilityTile& tile, int block) {
-  return tile.key + block / VisibilityTile::kBlocksX * kHeight * kTileSize +
-         block % VisibilityTile::kBlocksX * kWidth;
-}
-
 BlockCover cover_of(const VisibilityTile& tile, int block) {
   const Keys d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const std::int64_t* const keys = keys_of(tile, block);
+  const std::int64_t* const keys = tile.key + VisibilityTile::first_pixel(block);
   const auto empty = hn::Set(d, kEmptyKey);
   auto farthest = hn::Zero(d);
   std::uint64_t covered = 0;
@@ -98,7 +93,7 @@ bool drop_hidden(const BlockCover& cover, int block, VisibilityTile& tile) {
   const auto empty = hn::Set(d, kEmptyKey);
   const auto farthest = hn::Set(d, std::int64_t{cover.farthest} << 32 | kNothing);
   auto dropped = hn::MaskFromVec(hn::Zero(d));
-  std::int64_t* const keys = const_cast<std::int64_t*>(keys_of(tile, block));
+  std::int64_t* const keys = tile.key + VisibilityTile::first_pixel(block);
   for (int j = 0; j < kHeight; ++j) {
     const std::uint64_t row = covered >> j / 2 * kWidth;
     for (int i = 0; i < kWidth; i += lanes) {

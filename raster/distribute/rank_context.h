@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "comm/communicator.h"
+#include "composite/shown_blocks.h"
 #include "loadbalance/schedule.h"
 #include "raster/distribute/regions.h"
 #include "raster/render.h"

@@ -101,12 +101,11 @@ void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, i
 
 void refresh(int block, VisibilityTile& tile) {
   const Keys d;
-  const int i0 = block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
-  const int j0 = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight;
+  const std::int64_t* const keys = tile.key + VisibilityTile::first_pixel(block);
   auto farthest = hn::Zero(d);
-  for (int j = j0; j < j0 + VisibilityTile::kBlockHeight; ++j) {
-    for (int i = i0; i < i0 + VisibilityTile::kBlockWidth; i += static_cast<int>(hn::Lanes(d)))
-      farthest = hn::Max(farthest, hn::Load(d, tile.key + j * kTileSize + i));
+  for (int j = 0; j < VisibilityTile::kBlockHeight; ++j) {
+    for (int i = 0; i < VisibilityTile::kBlockWidth; i += static_cast<int>(hn::Lanes(d)))
+      farthest = hn::Max(farthest, hn::Load(d, keys + j * kTileSize + i));
   }
   HWY_ALIGN std::int64_t lanes[16];
   hn::Store(farthest, d, lanes);
@@ -358,8 +357,7 @@ void VisibilityTile::clear(const geometry::Rect& rect) {
 
 std::int32_t VisibilityTile::farthest_now(int block) const {
   if ((stale >> block & 1) == 0) return farthest_of(block);
-  const std::int64_t* keys =
-      key + block / kBlocksX * kBlockHeight * kTileSize + block % kBlocksX * kBlockWidth;
+  const std::int64_t* keys = key + first_pixel(block);
   std::int64_t last = std::numeric_limits<std::int64_t>::min();
   for (int j = 0; j < kBlockHeight; ++j, keys += kTileSize)
     last = std::max(last, *std::max_element(keys, keys + kBlockWidth));

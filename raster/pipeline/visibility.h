@@ -51,6 +51,10 @@ struct VisibilityTile {
   static constexpr int kBlockWidth = 16, kBlockHeight = 8;
   static constexpr int kBlocksX = kTileSize / kBlockWidth;
   static constexpr int kBlocks = kTilePixels / (kBlockWidth * kBlockHeight);
+  // The first pixel of a block.
+  static constexpr int first_pixel(int block) {
+    return block / kBlocksX * kBlockHeight * kTileSize + block % kBlocksX * kBlockWidth;
+  }
 
   alignas(64) std::int64_t key[kTilePixels];
   alignas(64) std::int32_t farthest[kBlocks];
