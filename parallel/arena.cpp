@@ -40,6 +40,11 @@ AllowThreads::AllowThreads(int threads)
           static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())))}) {}
 AllowThreads::~AllowThreads() = default;
 
+void keep_workers() {
+  set_worker_stack_size();
+  tbb::task_arena(1, 1).execute([] {});  // a thread that has run something is a user to its end
+}
+
 int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
 int arena_thread() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
 

@@ -56,6 +56,12 @@ class AllowThreads {
   std::unique_ptr<Limit> limit_;
 };
 
+// oneTBB's workers stay until the calling thread ends, or longer. Whoever starts threads that run
+// loops, and waits for them, calls it first: else the last of them to end sends the workers away,
+// each call starts them anew, and pthread_detach, by which oneTBB lets go of them, crashes now and
+// then: in glibc 2.36 it reads the stack of a thread that may have gone (oneTBB's issue 1758).
+void keep_workers();
+
 // The number of threads of the arena that the caller is in.
 int arena_threads();
 // The number of the calling thread in that arena, from 0 to arena_threads() - 1.

@@ -8,6 +8,8 @@
 #include <system_error>
 #include <thread>
 
+#include "parallel/arena.h"
+
 namespace delray::parallel {
 namespace {
 
@@ -40,6 +42,7 @@ void set_stack_sizes() {
 
 int run_on_own_stack(FunctionRef<int()> f) {
   set_stack_sizes();
+  keep_workers();
   int result = 0;
   std::thread thread;
   try {

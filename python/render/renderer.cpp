@@ -220,6 +220,7 @@ class Growing {
     if (renderer.over_mpi())
       throw std::invalid_argument("comm: a picture that grows is made by one process");
     renderer.preview_always();
+    parallel::keep_workers();
     worker_ = std::jthread([this] { work(); });
   }
   ~Growing() { stop(); }
