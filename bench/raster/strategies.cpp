@@ -83,7 +83,8 @@ class Configuration {
     comm::run_threads(ranks_, threads_,
                       [&](comm::Communicator& communicator) { run_rank(communicator, frames); });
   }
-  // One rank's part. Frames at rest come after one that is not timed.
+  // One rank's part. Frames at rest come after one that is not timed, and so do those that turn:
+  // the first is a step from the camera before it as well, and no jump from the one at rest.
   void run_rank(comm::Communicator& communicator, int frames) {
     auto& [renderer, turned] = ranks_memory_[static_cast<std::size_t>(communicator.rank())];
     if (!renderer) renderer.emplace(view_.scene, view_.shader);
@@ -103,6 +104,7 @@ class Configuration {
     for (int i = 0; i < frames; ++i) {
       render(view_.cameras[0], &times_.at_rest, &times_.phases_at_rest);
     }
+    if (turned != 0) render(view_.cameras[turned], nullptr, nullptr);
     for (int i = 0; i < frames; ++i) {
       turned = (turned + 1) % kAround;
       render(view_.cameras[turned], &times_.turning, &times_.phases_turning);
