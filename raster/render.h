@@ -96,7 +96,7 @@ struct RenderOptions {
   int regions_per_rank = 1;  // more than one: the costliest go first to the least loaded rank
   // A partition is kept from frame to frame for as long as no rank would have to do more than so
   // many times an equal share.
-  double keep_factor = 1.2;
+  double keep_factor = 1.1;
   // Who shows which part of the frame (loadbalance/wall.h): every rank gets the pixels of the
   // displays that it owns, and rank 0 no picture. Disjoint; without a window. Sort-last composites
   // one after the other, the others draw regions of the whole frame, of which every rank sends on

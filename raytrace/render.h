@@ -74,7 +74,7 @@ struct RenderOptions {
   int regions_per_rank = 1;
   // A partition is kept from frame to frame for as long as no rank would have to do more than so
   // many times an equal share.
-  double keep_factor = 1.2;
+  double keep_factor = 1.1;
   BuildOptions build;                      // where a tracer is made
   parallel::Progress* progress = nullptr;  // steps are tiles
 };

@@ -68,9 +68,17 @@ void Coverage::for_each_square(const geometry::Rect& box, F&& f) const {
   }
 }
 
-double Coverage::layers(const Square& square, bool blended) const {
-  return (square.opaque + (blended ? square.blended : 0)) /
-         (kSide * kSide * static_cast<double>(n_) * n_);
+Coverage::Layers Coverage::layers(const Square& square, bool blended) const {
+  const double all = (square.opaque + (blended ? square.blended : 0)) /
+                     (kSide * kSide * static_cast<double>(n_) * n_);
+  return {all, all * seen_of(all)};
+}
+
+std::vector<Coverage::Layers> Coverage::layers(bool blended) const {
+  std::vector<Layers> result;
+  result.reserve(squares_.size());
+  for (const Square& square : squares_) result.push_back(layers(square, blended));
+  return result;
 }
 
 void Coverage::add(const geometry::Rect& box, double samples, const Surface& surface) {
@@ -119,14 +127,13 @@ void Coverage::sum_over_ranks(comm::Communicator& communicator) {
     squares_[i] = {all[2 * i], all[2 * i + 1], large[2 * i], large[2 * i + 1]};
 }
 
-double Coverage::seen(const geometry::Rect& box, bool blended) const {
-  double covered = 0, seen = 0;
+double Coverage::seen(const geometry::Rect& box, std::span<const Layers> layers) const {
+  double all = 0, seen = 0;
   for_each_square(box, [&](std::size_t i) {
-    const double here = layers(squares_[i], blended);
-    covered += here;
-    seen += here * seen_of(here);
+    all += layers[i].all;
+    seen += layers[i].seen;
   });
-  return covered > 0 ? seen / covered : 1;
+  return all > 0 ? seen / all : 1;
 }
 
 std::vector<loadbalance::WeightedBox> Coverage::costs_of_large(double seen_price,
@@ -139,8 +146,8 @@ std::vector<loadbalance::WeightedBox> Coverage::costs_of_large(double seen_price
                    static_cast<std::size_t>(i)];
       const double drawn = square.large_opaque + square.large_blended;
       if (!(drawn > 0)) continue;
-      const double seen = square.large_opaque * seen_of(layers(square, false)) +
-                          square.large_blended * seen_of(layers(square, true));
+      const double seen = square.large_opaque * seen_of(layers(square, false).all) +
+                          square.large_blended * seen_of(layers(square, true).all);
       const geometry::Rect pixels{i * kSide, j * kSide, (i + 1) * kSide, (j + 1) * kSide};
       boxes.push_back(
           {geometry::intersection(pixels, frame_), seen_price * seen + drawn_price * drawn, 0, 0});

@@ -38,10 +38,16 @@ class Coverage {
   // Collective. Rank 0 alone gets the sums of large triangles.
   void sum_over_ranks(comm::Communicator& communicator);
 
-  // The part of an opaque, or a blended, surface's samples in the box that is expected to be seen,
-  // if all samples of a square lie behind each other at random: opaque ones hide both kinds,
-  // blended ones the blended behind them. In [0, 1].
-  double seen(const geometry::Rect& box, bool blended) const;
+  // Of a square, how many layers of samples it has, and of how many of them the samples are
+  // expected to be seen if all lie behind each other at random.
+  struct Layers {
+    double all, seen;
+  };
+  // Of all squares, for opaque or for blended surfaces: opaque samples hide both kinds, blended
+  // ones the blended behind them.
+  std::vector<Layers> layers(bool blended) const;
+  // The part of a surface's samples in the box that is expected to be seen, in [0, 1].
+  double seen(const geometry::Rect& box, std::span<const Layers> layers) const;
   // The costs of large triangles, square by square, at a price for a sample that is expected to be
   // seen and one for each that is drawn.
   std::vector<loadbalance::WeightedBox> costs_of_large(double seen_price, double drawn_price) const;
@@ -52,7 +58,7 @@ class Coverage {
   static geometry::Rect squares_of(const geometry::Rect& box);
   template <class F>
   void for_each_square(const geometry::Rect& box, F&& f) const;
-  double layers(const Square& square, bool blended) const;
+  Layers layers(const Square& square, bool blended) const;
 
   const Screen& screen_;
   int n_, columns_, rows_;

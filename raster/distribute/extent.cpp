@@ -17,6 +17,9 @@
 namespace delray::raster {
 namespace {
 
+// Triangles of a cluster that may stand for others, or they for it.
+constexpr std::uint32_t kFullEnough = kClusterTriangles / 2;
+
 void include(const geometry::Rect& pixels, geometry::Rect& box) {
   box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0), std::max(box.x1, pixels.x1),
          std::max(box.y1, pixels.y1)};
@@ -40,33 +43,52 @@ void Extents::look_at(const PreparedDraw& draw, const ClusterBlock& block,
   sum_ = sum_of(boxes_, 0, cluster.count);
 }
 
-// Adds a whole cluster by what its neighbour shows, unless there is reason to look at it: it is the
-// first of its neighbours, has few triangles, or reaches the border; or the neighbour shows
-// nothing.
+bool Extents::lies_within(const geometry::Rect& pixels) const {
+  return pixels.x0 > 0 && pixels.y0 > 0 && pixels.x1 < screen_.width &&
+         pixels.y1 < screen_.height && pixels.area() <= kLargeBox;
+}
+
+// Looks at the first of the cluster's neighbours that shows anything, unless that has been done.
+void Extents::look_at_neighbours(const PreparedDraw& draw, const ClusterBlock& block,
+                                 std::uint32_t part) {
+  const std::uint32_t first = part / kMeasured * kMeasured;
+  if (neighbours_.first == &block.clusters[first] && neighbours_.draw == &draw) return;
+  neighbours_ = {&draw, &block.clusters[first], nullptr, {}, {}};
+  const auto end = std::min(first + kMeasured, static_cast<std::uint32_t>(block.clusters.size()));
+  for (std::uint32_t i = first; i < end; ++i) {
+    const MeshCluster& cluster = block.clusters[i];
+    if (cluster.count < kFullEnough) continue;
+    look_at(draw, block, cluster);
+    if (!may_be_seen_ || (!vertices_.any_outside && sum_.triangles == 0)) continue;
+    if (!vertices_.any_outside && lies_within(bounds_)) {
+      neighbours_.measured = &cluster;
+      neighbours_.bounds = bounds_;
+      neighbours_.sum = sum_;
+    }
+    return;
+  }
+}
+
+// Adds a whole cluster by what a neighbour shows, unless there is reason to look at it: it is the
+// one that is looked at, has few triangles, or reaches the border; or no neighbour will do.
 bool Extents::estimate(const PreparedDraw& draw, const ClusterBlock& block, std::uint32_t part,
                        Extent& result) {
   const MeshCluster& cluster = block.clusters[part];
-  const MeshCluster& neighbour = block.clusters[part / kMeasured * kMeasured];
-  if (&neighbour == &cluster || std::min(cluster.count, neighbour.count) < kClusterTriangles / 2)
-    return false;
-  const auto lies_within = [&](const geometry::Rect& pixels) {
-    return pixels.x0 > 0 && pixels.y0 > 0 && pixels.x1 < screen_.width &&
-           pixels.y1 < screen_.height && pixels.area() <= kLargeBox;
-  };
+  if (cluster.count < kFullEnough) return false;
   const ClusterBounds bounds = bound(screen_, draw, cluster.box);
   if (bounds.outside || shows_hidden_side_only(screen_, draw, cluster, bounds)) return true;
   if (!lies_within(bounds.pixels)) return false;
-  look_at(draw, block, neighbour);
-  if (!may_be_seen_ || vertices_.any_outside || sum_.triangles == 0 || !lies_within(bounds_))
-    return false;
+  look_at_neighbours(draw, block, part);
+  if (neighbours_.measured == nullptr || neighbours_.measured == &cluster) return false;
   // As many for each pixel of the box: the nearer of two is larger.
   const auto box = static_cast<std::uint64_t>(bounds.pixels.area());
+  const auto of_neighbour = static_cast<std::uint64_t>(neighbours_.bounds.area());
   const auto like_neighbour = [&](std::uint64_t amount) {
-    return std::max<std::uint64_t>(1, amount * box / static_cast<std::uint64_t>(bounds_.area()));
+    return std::max<std::uint64_t>(1, amount * box / of_neighbour);
   };
   include(bounds.pixels, result.box);
-  result.triangles += like_neighbour(sum_.triangles);
-  result.pixels += like_neighbour(sum_.pixels);
+  result.triangles += like_neighbour(neighbours_.sum.triangles);
+  result.pixels += like_neighbour(neighbours_.sum.pixels);
   return true;
 }
 

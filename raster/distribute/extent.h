@@ -6,8 +6,8 @@
 namespace delray::raster {
 
 // The pixels that the box of triangles touches, clipped to the frame, and how many of them may be
-// seen. For costs: exact where nothing is clipped, but that of small clusters that follow each
-// other in a mesh one in kMeasured is looked at, and what the others show is taken to be like it.
+// seen. For costs: exact where nothing is clipped, but that of so many small clusters that follow
+// each other in a mesh one is looked at, and what the others show is taken to be like it.
 struct Extent {
   geometry::Rect box;
   std::uint64_t triangles = 0;
@@ -19,6 +19,9 @@ struct Extent {
 // are kept. One per thread.
 class Extents {
  public:
+  // One in so many neighbours is looked at.
+  static constexpr std::uint32_t kMeasured = 32;
+
   // Refers to the screen.
   explicit Extents(const Screen& screen) : screen_(screen) {}
 
@@ -28,10 +31,9 @@ class Extents {
             std::vector<ScreenTriangle>& large);
 
  private:
-  // One in so many neighbours is looked at.
-  static constexpr std::uint32_t kMeasured = 8;
-
+  bool lies_within(const geometry::Rect& pixels) const;
   void look_at(const PreparedDraw& draw, const ClusterBlock& block, const MeshCluster& cluster);
+  void look_at_neighbours(const PreparedDraw& draw, const ClusterBlock& block, std::uint32_t part);
   bool estimate(const PreparedDraw& draw, const ClusterBlock& block, std::uint32_t part,
                 Extent& result);
 
@@ -44,6 +46,14 @@ class Extents {
   ScreenVertices vertices_;
   TriangleBoxes boxes_;  // if no vertex is outside
   SumOfBoxes sum_;       // the same
+  // The clusters from `first` on, kMeasured of a block, and which of them stands for the others:
+  // null where none can.
+  struct Neighbours {
+    const PreparedDraw* draw = nullptr;
+    const MeshCluster *first = nullptr, *measured = nullptr;
+    geometry::Rect bounds;
+    SumOfBoxes sum;
+  } neighbours_;
 };
 
 }  // namespace delray::raster

@@ -122,7 +122,8 @@ ScreenPartition::GroupBounds ScreenPartition::bound(RankContext& rank,
   for (const PreparedDraw& prepared : draws)
     of_draw.push_back(
         {prepared.blended, mean_opacity(rank.prepared.shader(), *prepared.draw->mesh)});
-  constexpr std::size_t kGrain = 1024;  // triangles
+  // Triangles: what Extents looks at for a part of them serves the others.
+  constexpr std::size_t kGrain = Extents::kMeasured * kClusterTriangles;
   const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
   std::mutex adds_large;
   ProcessorSeconds seconds;
@@ -163,9 +164,12 @@ void ScreenPartition::add_seen(const loadbalance::RasterCostModel& model, const 
     costed_.seen = {model.per_pixel, std::vector<double>(boxes.size()),
                     std::vector<double>(boxes.size())};
   }
+  std::vector<Coverage::Layers> layers[2];  // of opaque and of blended surfaces
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].box.empty()) continue;
-    const double seen = coverage.seen(boxes[i].box, bounds.surfaces[i].blended);
+    const bool blended = bounds.surfaces[i].blended;
+    if (layers[blended].empty()) layers[blended] = coverage.layers(blended);
+    const double seen = coverage.seen(boxes[i].box, layers[blended]);
     boxes[i].cost += model.per_pixel * bounds.samples[i] * (seen + kDrawnPixelPrice);
     if (!with_visible) continue;
     costed_.seen.all[i] = seen * (bounds.samples[i] + bounds.large_samples[i]);

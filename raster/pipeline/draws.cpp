@@ -70,12 +70,17 @@ std::vector<Piece> pieces_of(const scenes::Scene& scene,
 }
 
 DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
-  std::sort(pieces.begin(), pieces.end(),
-            [](const Piece& a, const Piece& b) { return a.primitive < b.primitive; });
+  const auto comes_before = [](const Piece& a, const Piece& b) {
+    return a.primitive < b.primitive;
+  };
+  // Those of one's own come first, in order already.
+  const auto middle = std::is_sorted_until(pieces.begin(), pieces.end(), comes_before);
+  std::sort(middle, pieces.end(), comes_before);
+  std::inplace_merge(pieces.begin(), middle, pieces.end(), comes_before);
   DrawList list;
   // An instance's pieces share a draw, in whatever order pieces of other draws lie between them.
   std::unordered_map<const glm::mat4x3*, std::uint32_t> draw_of;
-  for (const Piece& piece : pieces) {
+  const auto find_draw = [&](const Piece& piece) {
     const auto [found, is_new] =
         draw_of.emplace(piece.transform, static_cast<std::uint32_t>(list.draws.size()));
     if (is_new) {
@@ -84,7 +89,12 @@ DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
       if (clusters == nullptr) clusters = &list.own.emplace_back();
       list.draws.push_back({piece.mesh, piece.transform, clusters});
     }
-    const std::uint32_t draw = found->second;
+    return found->second;
+  };
+  std::uint32_t draw = 0;
+  for (const Piece& piece : pieces) {
+    if (list.draws.empty() || list.draws[draw].transform != piece.transform)
+      draw = find_draw(piece);
     list.draws[draw].clusters->make(*piece.mesh, piece.first, piece.count);
     append_clusters(piece, draw, list);
     list.triangles += piece.count;

@@ -30,7 +30,7 @@ struct Sharing {
   std::string partition = "mahd", schedule;
   bool measured_costs = false, master_works = true;
   int regions_per_rank = 1, block = 64;
-  double keep_factor = 1.2;
+  double keep_factor = 1.1;
 };
 
 struct RenderRequest {
