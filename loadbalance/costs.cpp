@@ -25,6 +25,9 @@ constexpr std::int64_t kPiecesPerPart = 1000;
 // a thousand parts still leave cuts within a tenth of a part's side.
 constexpr std::int64_t kMostBoxes = std::int64_t{1} << 17;
 
+// Primitives of a box, at most: of many more, the box would be about as large as a part.
+constexpr std::uint64_t kLargestBox = 1024;
+
 // The first pixel of cell i of `cells` over `pixels` pixels.
 int border(int i, int cells, int pixels) {
   return static_cast<int>(std::int64_t{i} * pixels / cells);
@@ -98,7 +101,7 @@ int cost_cell_side(Rect frame, int parts) {
 int primitives_per_box(std::uint64_t primitives, int parts) {
   if (parts < 1) throw std::invalid_argument("a partition has at least one part");
   const auto pieces = static_cast<std::uint64_t>(std::min(kPiecesPerPart * parts, kMostBoxes));
-  return static_cast<int>(std::clamp<std::uint64_t>(primitives / pieces, 1, 256));
+  return static_cast<int>(std::clamp<std::uint64_t>(primitives / pieces, 1, kLargestBox));
 }
 
 std::vector<WeightedBox> gather_boxes(std::span<const WeightedBox> boxes,

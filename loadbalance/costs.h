@@ -51,7 +51,7 @@ int cost_cell_side(geometry::Rect frame, int parts);
 
 // The number of primitives to take together in a box, given how many are in the frame: about a
 // thousand boxes for each part, so that a small scene gives each primitive its own, but no more
-// than one rank can look at in a few milliseconds, however many parts there are. From 1 to 256.
+// than one rank can look at in a few milliseconds, however many parts there are. From 1 to 1024.
 // REQUIRES: parts >= 1.
 int primitives_per_box(std::uint64_t primitives, int parts);
 

@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t kGroupsPerRank = 250;
 // Of all ranks, as each looks at all of them.
 constexpr std::uint64_t kMostGroups = std::uint64_t{1} << 16;
-constexpr std::uint64_t kLargestGroup = 256;  // triangles
+constexpr std::uint64_t kLargestGroup = 1024;  // triangles
 
 // The ranges of everybody's groups on all ranks. A message only where there are any.
 std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, const CostedGroups& costed,

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "raster/distribute/cluster_messages.h"
 #include "raster/pipeline/cull.h"
@@ -16,81 +17,126 @@
 #include "raster/pipeline/triangle_boxes.h"
 
 namespace delray::raster {
-namespace {
 
-struct Memory {
+struct TriangleSorter::Memory {
+  // A rank other than this, and which of `places` are for it.
+  struct Receiver {
+    int rank;
+    std::vector<std::uint8_t> which;
+  };
+
   ScreenVertices vertices;
   TriangleBoxes boxes;
   ClusterPacker packer;
+  std::vector<loadbalance::Region> near;  // that the cluster touches, in samples, by owner
+  std::vector<int> owners;                // of the cluster, or of the triangle at hand
+  std::vector<std::uint8_t> places;       // of triangles that travel
+  std::vector<Receiver> receivers;        // the first receivers_used; others are spare
+  std::size_t receivers_used = 0;
+
+  // `which` of the receiver with this number.
+  std::vector<std::uint8_t>& places_for(int rank) {
+    std::size_t i = 0;
+    while (i < receivers_used && receivers[i].rank != rank) ++i;
+    if (i == receivers_used) {
+      if (receivers_used++ == receivers.size()) receivers.emplace_back();
+      receivers[i].rank = rank;
+      receivers[i].which.clear();
+    }
+    return receivers[i].which;
+  }
+
+  // The triangle is for `owners`. Returns whether rank `own` is one of them.
+  bool add(std::uint32_t place, int own) {
+    bool stays = false, travels = false;
+    for (const int owner : owners) {
+      if (owner == own) {
+        stays = true;
+      } else {
+        travels = true;
+        places_for(owner).push_back(static_cast<std::uint8_t>(places.size()));
+      }
+    }
+    if (travels) places.push_back(static_cast<std::uint8_t>(place));
+    return stays;
+  }
+
+  // All triangles that have pixels in `boxes` are for another rank.
+  void add_shown(std::uint32_t begin, std::uint32_t end, int rank) {
+    places.resize(end - begin);
+    std::size_t count = 0;
+    for (std::uint32_t place = begin; place < end; ++place) {
+      places[count] = static_cast<std::uint8_t>(place);
+      count += boxes.pixels[place] != TriangleBoxes::kCulled;
+    }
+    places.resize(count);
+    if (count == 0) return;
+    std::vector<std::uint8_t>& which = places_for(rank);
+    which.resize(count);
+    std::iota(which.begin(), which.end(), std::uint8_t{0});
+  }
 };
-Memory& memory() {
-  static thread_local Memory of_thread;
-  return of_thread;
+
+TriangleSorter::Memory& TriangleSorter::memory_of_thread() {
+  static thread_local Memory memory;
+  return memory;
 }
 
-}  // namespace
+TriangleSorter::TriangleSorter(const RankContext& rank, const RegionDrawing& drawing,
+                               const loadbalance::RegionIndex& regions)
+    : rank_(rank),
+      number_(rank.number()),
+      drawing_(drawing),
+      regions_(regions),
+      memory_(memory_of_thread()) {}
 
 // Of a cluster, and what is to be known for its triangles.
 void TriangleSorter::find_owners(const geometry::Rect& samples) {
   const int n = rank_.options.supersampling;
-  near_.clear();
+  memory_.near.clear();
   regions_.for_each_region(pixels_of(samples, n),
                            [&](const loadbalance::Region& region, const geometry::Rect&) {
-                             near_.push_back({samples_of(region.rect, n), region.owner});
+                             memory_.near.push_back({samples_of(region.rect, n), region.owner});
                            });
-  std::ranges::sort(near_, {}, &loadbalance::Region::owner);
+  std::ranges::sort(memory_.near, {}, &loadbalance::Region::owner);
   find_owners_near(samples);
 }
 
 // Of a part of the cluster.
 void TriangleSorter::find_owners_near(const geometry::Rect& samples) {
   constexpr std::size_t kFew = 16;
-  if (near_.size() > kFew) {
-    regions_.owners_of(pixels_of(samples, rank_.options.supersampling), owners_);
+  if (memory_.near.size() > kFew) {
+    regions_.owners_of(pixels_of(samples, rank_.options.supersampling), memory_.owners);
     return;
   }
-  owners_.clear();
-  for (const loadbalance::Region& region : near_) {
+  memory_.owners.clear();
+  for (const loadbalance::Region& region : memory_.near) {
     if (!geometry::intersection(region.rect, samples).empty() &&
-        (owners_.empty() || owners_.back() != region.owner))
-      owners_.push_back(region.owner);
+        (memory_.owners.empty() || memory_.owners.back() != region.owner))
+      memory_.owners.push_back(region.owner);
   }
 }
 
-// The triangle is for owners_. Returns whether this rank is one of them.
-bool TriangleSorter::add_receivers(std::uint32_t place) {
-  bool stays = false, travels = false;
-  for (const int owner : owners_) {
-    if (owner == rank_.number()) {
-      stays = true;
-      continue;
-    }
-    travels = true;
-    std::size_t i = 0;
-    while (i < receivers_used_ && receivers_[i].rank != owner) ++i;
-    if (i == receivers_used_) {
-      if (receivers_used_++ == receivers_.size()) receivers_.emplace_back();
-      receivers_[i].rank = owner;
-      receivers_[i].which.clear();
-    }
-    receivers_[i].which.push_back(static_cast<std::uint8_t>(places_.size()));
-  }
-  if (travels) places_.push_back(static_cast<std::uint8_t>(place));
-  return stays;
-}
-
-// Whether anything is for this rank itself. What others get is in places_ and receivers_.
+// Whether anything is for this rank itself. What others get is in the places and receivers
+// of the memory.
 bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock& block,
                                     const Cluster& cluster) {
   bool stays = false;
-  places_.clear();
-  receivers_used_ = 0;
-  const bool one_owner = owners_.size() == 1;
+  memory_.places.clear();
+  memory_.receivers_used = 0;
+  const bool one_owner = memory_.owners.size() == 1;
   const MeshCluster& mesh_cluster = block.clusters[cluster.part];
-  const ScreenVertices& vertices = memory().vertices;
-  TriangleBoxes& boxes = memory().boxes;
+  const ScreenVertices& vertices = memory_.vertices;
+  TriangleBoxes& boxes = memory_.boxes;
   const ClusterOnScreen on_screen{rank_.screen, draw, block, mesh_cluster, vertices};
-  if (!vertices.any_outside) find_boxes(on_screen, boxes);
+  if (!vertices.any_outside) {
+    find_boxes(on_screen, boxes);
+    if (one_owner &&
+        !boxes.any_alone) {  // another rank: what is this rank's alone is not looked at
+      memory_.add_shown(cluster.begin, cluster.end, memory_.owners[0]);
+      return false;
+    }
+  }
   for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
     const bool alone = vertices.any_outside || boxes.pixels[place] == TriangleBoxes::kAlone;
     if (!alone && boxes.pixels[place] == TriangleBoxes::kCulled) continue;
@@ -105,16 +151,17 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
       if (outcome == SetUpOutcome::culled) continue;
     }
     if (!one_owner) find_owners_near(alone ? box : boxes.box(place));
-    stays |= add_receivers(place);
+    stays |= memory_.add(place, number_);
   }
   return stays;
 }
 
 void TriangleSorter::pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted) {
-  if (places_.empty()) return;
-  memory().packer.set(drawing_.frame(), draw, number, places_);
-  for (const Receiver& receiver : std::span(receivers_).first(receivers_used_))
-    memory().packer.pack(receiver.which, sorted.for_rank(receiver.rank));
+  if (memory_.places.empty()) return;
+  memory_.packer.set(drawing_.frame(), draw, number, memory_.places);
+  for (const Memory::Receiver& receiver :
+       std::span(memory_.receivers).first(memory_.receivers_used))
+    memory_.packer.pack(receiver.which, sorted.for_rank(receiver.rank));
 }
 
 void TriangleSorter::sort(std::uint32_t number, SortedClusters& sorted) {
@@ -124,22 +171,22 @@ void TriangleSorter::sort(std::uint32_t number, SortedClusters& sorted) {
   const MeshCluster& mesh_cluster = block.clusters[cluster.part];
   const ClusterBounds bounds = bound(rank_.screen, draw, mesh_cluster.box);
   find_owners(bounds.pixels);
-  if (bounds.outside || owners_.empty() ||
+  if (bounds.outside || memory_.owners.empty() ||
       shows_hidden_side_only(rank_.screen, draw, mesh_cluster, bounds)) {
     sorted.culled += cluster.end - cluster.begin;
     return;
   }
-  if (owners_.size() == 1 && owners_[0] == rank_.number()) {
+  if (memory_.owners.size() == 1 && memory_.owners[0] == number_) {
     sorted.staying.push_back(number);
     return;
   }
   transform(draw.to_view, rank_.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
-            memory().vertices);
+            memory_.vertices);
   const bool stays = find_receivers(draw, block, cluster);
   if (stays)
     sorted.staying.push_back(number);
   else
-    sorted.culled += cluster.end - cluster.begin - places_.size();
+    sorted.culled += cluster.end - cluster.begin - memory_.places.size();
   pack(draw, number, sorted);
 }
 

@@ -33,39 +33,31 @@ struct SortedClusters {
   }
 };
 
-// Does the geometry of one cluster after the other. For one thread.
+// Does the geometry of one cluster after the other. For one thread, whose memory it uses.
 class TriangleSorter {
  public:
   // Refers to all of them; owners of regions are ranks.
   TriangleSorter(const RankContext& rank, const RegionDrawing& drawing,
-                 const loadbalance::RegionIndex& regions)
-      : rank_(rank), drawing_(drawing), regions_(regions) {}
+                 const loadbalance::RegionIndex& regions);
 
   // Culls and transforms the drawing's cluster with this number. Triangles that are seen are packed
   // for the other ranks whose regions they touch.
   void sort(std::uint32_t number, SortedClusters& sorted);
 
  private:
-  // A rank other than this, and which of places_ are for it.
-  struct Receiver {
-    int rank;
-    std::vector<std::uint8_t> which;
-  };
+  struct Memory;
+  static Memory& memory_of_thread();
 
   void find_owners(const geometry::Rect& samples);
   void find_owners_near(const geometry::Rect& samples);
   bool find_receivers(const PreparedDraw& draw, const ClusterBlock& block, const Cluster& cluster);
-  bool add_receivers(std::uint32_t place);
   void pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted);
 
   const RankContext& rank_;
+  const int number_;  // the rank's
   const RegionDrawing& drawing_;
   const loadbalance::RegionIndex& regions_;
-  std::vector<loadbalance::Region> near_;  // that the cluster touches, in samples, by owner
-  std::vector<int> owners_;                // of the cluster, or of the triangle at hand
-  std::vector<std::uint8_t> places_;
-  std::vector<Receiver> receivers_;  // the first receivers_used_; others are spare
-  std::size_t receivers_used_ = 0;
+  Memory& memory_;
 };
 
 }  // namespace delray::raster

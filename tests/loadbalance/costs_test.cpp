@@ -74,7 +74,8 @@ TEST(Costs, AreFineEnoughForTheNumberOfParts) {
   EXPECT_EQ(cost_cell_side(frame, 100000), 2);
   EXPECT_EQ(cost_cell_side({}, 1), 2);
   EXPECT_EQ(primitives_per_box(13000000, 64), 203);
-  EXPECT_EQ(primitives_per_box(13000000, 16), 256);
+  EXPECT_EQ(primitives_per_box(13000000, 16), 812);
+  EXPECT_EQ(primitives_per_box(13000000, 4), 1024);
   EXPECT_EQ(primitives_per_box(32000, 64), 1);
 }
 
