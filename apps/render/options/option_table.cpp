@@ -223,7 +223,7 @@ std::vector<RenderOption> rasterizer_options() {
           .reported("regions", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::of(
           "--keep", [](auto& r) -> auto& { return r.sharing.keep_factor; }, group::kSharing,
-          "Repartition when a rank exceeds this multiple of the mean load (default: 1.2)")
+          "Repartition when a rank exceeds this multiple of the mean load (default: 1.1)")
           .check(number_between(1.0, 1000.0))
           .unless(unless_strategy(&Strategy::partitions, why_no_costs))
           .reported("keep", ray_tracer_or_strategy_that(&Strategy::partitions)),
