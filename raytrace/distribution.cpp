@@ -21,7 +21,9 @@ constexpr Distribution kDistributions[] = {
     {.name = "ray",
      .description = "rays go to the ranks that have the parts of the scene that they may hit "
                     "(Caspary, Jevans)",
-     .decide = distribute_ray},
+     .decide = distribute_ray,
+     .plans_tiles = true,
+     .uneven = 0.4},
     {.name = "ring",
      .description =
          "rays go around all ranks; parts of the scene move to less loaded neighbours (Kim)",

@@ -40,9 +40,11 @@ struct Distribution {
   // Whether rays may travel instead, so that clusters are only fetched which are worth it, and make
   // room between frames for others that are worth more.
   bool chooses = false;
-  // Whether ranks that have less than an equal share trace tiles of the others: what rays need
-  // comes to them anyway.
+  // Whether ranks that have less than an equal share trace tiles of the others, and by how much of
+  // a share one must have more: by the more where what rays need does not come to them, but rays
+  // travel instead.
   bool plans_tiles = false;
+  double uneven = 0.0;
   // Whether every message says how many rays its sender has to intersect.
   bool tells_loads = false;
   // How the scene is divided, for share_options().

@@ -163,17 +163,15 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedSc
   if (distribution.plans_tiles && communicator.size() > 1) {
     const bool same = planned.frame == frame.tiles.frame && planned.width == frame.tiles.width;
     plan = plan_tiles(communicator, same ? planned.tiles : std::vector<PlannedTile>(),
-                      frame.tiles.grid().count());
+                      frame.tiles.grid().count(), distribution.uneven);
   }
   DistributedTracer tracer(communicator, scene, distribution, frame, plan);
   ServingCommunicator serving(communicator, tracer);
   how.threads = 1;
   Traced traced;
   traced.report = loadbalance::find_schedule(frame.options.schedule)
-                      ->run(serving, frame.tiles.grid(), how, [&](std::uint32_t tile, int) {
-                        tracer.add(tile);
-                        if (progress != nullptr) progress->advance();
-                      });
+                      ->run(serving, frame.tiles.grid(), how,
+                            [&](std::uint32_t tile, int) { tracer.add(tile); });
   tracer.finish();
   traced.tiles = std::move(tracer.tiles());
   for (const TilePixels& tile : traced.tiles) traced.rays += tile.rays;

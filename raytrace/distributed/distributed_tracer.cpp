@@ -21,15 +21,15 @@ namespace {
 
 constexpr comm::Tag kTagControl = 201;  // RayMessenger::kTag is of rays
 
-// Tasks in the making on a rank: enough that some are ready while the others' rays travel.
-constexpr std::size_t kMostPixelTasks = 96;
-// Where clusters are fetched: the more rays wait for one, the less often it comes.
-constexpr std::size_t kMostFetchingTasks = 384;
+// Tasks in the making on a rank: enough that some are ready while the others' rays travel, and
+// that many rays wait for a cluster which is fetched, so that it comes less often.
+constexpr std::size_t kMostPixelTasks = 384;
 
 // Tasks that are advanced at a time where rays travel: enough that those that wait for one cluster
 // fill packets.
 constexpr std::size_t kReadyAtOnce = 32;
-// Where none does, for each of several threads: enough that all are busy most of the time.
+// That each thread advances at a time: enough that all threads are busy most of the time, and few,
+// as others wait for answers meanwhile.
 constexpr std::size_t kReadyForThread = 8;
 
 // A rank looks whether messages have come at least so often while it waits.
@@ -60,7 +60,6 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       frame_(frame),
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
       ready_at_once_(kReadyAtOnce),
-      most_in_flight_(distribution.fetches ? kMostFetchingTasks : kMostPixelTasks),
       passes_tiles_on_(scene.file() == nullptr &&
                        !(distribution.fetches && scene.has_room_for_all())),
       plans_tiles_(distribution.plans_tiles && passes_tiles_on_ && communicator.size() > 1),
@@ -72,7 +71,10 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
   const std::size_t threads = static_cast<std::size_t>(parallel::arena_threads());
   if (distribution.decide == nullptr) scene_.learn_owners(communicator);
   scene_.begin_frame(distribution.chooses);
-  if (scene_.elsewhere().empty()) ready_at_once_ = threads == 1 ? 1 : kReadyForThread * threads;
+  if (scene_.elsewhere().empty()) {
+    passes_tiles_on_ = false;
+    ready_at_once_ = threads == 1 ? 1 : kReadyForThread * threads;
+  }
   waiting_.to_intersect.resize(ranks);
   waiting_.to_answer.resize(ranks);
   tiles_to_send_.resize(ranks);
@@ -81,19 +83,26 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
 
 int DistributedTracer::rank_of_tile(std::uint32_t tile) const {
   const int rank = communicator_.rank();
-  if (!passes_tiles_on_ || scene_.elsewhere().empty()) return rank;
   if (!plan_.empty() && plan_[tile] != kNoPlan) return plan_[tile];
   return owner_of_tile(frame_, scene_, rank, tile);
 }
 
 void DistributedTracer::add(std::uint32_t tile) {
-  const int owner = rank_of_tile(tile);
-  if (owner == communicator_.rank())
-    start(tile);
-  else
-    tiles_to_send_[static_cast<std::size_t>(owner)].push_back(tile);
+  if (passes_tiles_on_) {
+    // At once, and its own later: the others wait for what it passes on.
+    const int owner = rank_of_tile(tile);
+    if (owner == communicator_.rank()) {
+      waiting_tiles_.push_back(tile);
+      return;
+    }
+    std::vector<std::uint32_t>& tiles = tiles_to_send_[static_cast<std::size_t>(owner)];
+    tiles.push_back(tile);
+    if (tiles.size() >= kTilesAtOnce) send_all(false);
+    return;
+  }
+  start(tile);
   if (ready_.size() >= ready_at_once_) serve();
-  while (in_flight_ > most_in_flight_) {
+  while (in_flight_ > kMostPixelTasks) {
     if (!serve()) wait_a_moment();
   }
 }
@@ -101,7 +110,7 @@ void DistributedTracer::add(std::uint32_t tile) {
 // As many as there is room for. Returns whether any.
 bool DistributedTracer::start_waiting_tiles() {
   bool any = false;
-  for (; !waiting_tiles_.empty() && in_flight_ <= most_in_flight_; any = true) {
+  for (; !waiting_tiles_.empty() && in_flight_ <= kMostPixelTasks; any = true) {
     start(waiting_tiles_.back());
     waiting_tiles_.pop_back();
   }
@@ -112,7 +121,7 @@ void DistributedTracer::start(std::uint32_t number) {
   TilePixels pixels = start_tile(frame_, number);
   const std::vector<Task> tasks = tasks_of(frame_, pixels.rect, frame_.integrators.side());
   if (tasks.empty()) {
-    done_.push_back(std::move(pixels));
+    end_tile(std::move(pixels));
     return;
   }
   Tile& tile = *open_tiles_.emplace_back(std::make_unique<Tile>());
@@ -210,7 +219,10 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
 
 bool DistributedTracer::advance_pixel_tasks() {
   if (ready_.empty()) return false;
-  const std::vector<std::uint32_t> ready = std::exchange(ready_, {});
+  const std::size_t most = kReadyForThread * static_cast<std::size_t>(parallel::arena_threads());
+  const auto first = ready_.end() - static_cast<std::ptrdiff_t>(std::min(most, ready_.size()));
+  const std::vector<std::uint32_t> ready(first, ready_.end());
+  ready_.erase(first, ready_.end());
   std::vector<Advanced> advanced(ready.size());
   parallel::parallel_for(0, ready.size(), 1,
                          [&](std::size_t i) { advanced[i] = advance(ready[i]); });
@@ -280,8 +292,13 @@ void DistributedTracer::end_task(std::uint32_t index) {
                         tile->pixels.busy + for_answer * static_cast<double>(tile->answers),
                         communicator_.rank()});
   }
-  done_.push_back(std::move(tile->pixels));
+  end_tile(std::move(tile->pixels));
   std::erase_if(open_tiles_, [tile](const auto& open) { return open.get() == tile; });
+}
+
+void DistributedTracer::end_tile(TilePixels&& pixels) {
+  done_.push_back(std::move(pixels));
+  if (frame_.options.progress != nullptr) frame_.options.progress->advance();
 }
 
 template <class Message>

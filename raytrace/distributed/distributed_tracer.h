@@ -28,8 +28,8 @@ class DistributedTracer {
                     const Distribution& distribution, const TiledFrame& frame,
                     std::span<const std::int32_t> plan = {});
 
-  // Adds a tile, here or on the rank that has what it shows, and works until there is room for
-  // another.
+  // Adds a tile: notes it here, or passes it on to the rank that has what it shows. Where tiles
+  // stay on the ranks that they were given to, works at it until there is room for another.
   void add(std::uint32_t tile);
   // Works off what is there and came, without waiting. Whether there was anything.
   bool serve();
@@ -83,6 +83,7 @@ class DistributedTracer {
   bool advance_pixel_tasks();
   Advanced advance(std::uint32_t pixel_task);
   void end_task(std::uint32_t pixel_task);
+  void end_tile(TilePixels&& pixels);
   bool intersect_waiting();
   void intersect(ClusterBatch& batch);
   void send_all(bool idle);
@@ -98,11 +99,10 @@ class DistributedTracer {
   comm::Communicator& communicator_;
   SharedScene& scene_;
   const TiledFrame& frame_;
-  int last_sample_;             // one past it
-  std::size_t ready_at_once_;   // tasks that are advanced together
-  std::size_t most_in_flight_;  // tasks
-  bool passes_tiles_on_;        // to ranks that have what they show
-  bool plans_tiles_;            // for the next frame
+  int last_sample_;            // one past it
+  std::size_t ready_at_once_;  // tasks that are waited for before any is advanced
+  bool passes_tiles_on_;       // to ranks that have what they show
+  bool plans_tiles_;           // for the next frame
   std::span<const std::int32_t> plan_;
   Kernels kernels_;
   comm::Termination termination_;
@@ -112,7 +112,7 @@ class DistributedTracer {
   std::vector<std::uint32_t> free_, ready_;  // numbers of pixel_tasks
   std::size_t in_flight_ = 0;
   std::vector<std::unique_ptr<Tile>> open_tiles_;
-  std::vector<std::uint32_t> waiting_tiles_;               // that other ranks passed on to this one
+  std::vector<std::uint32_t> waiting_tiles_;               // of this rank, which it has not started
   std::vector<std::vector<std::uint32_t>> tiles_to_send_;  // by rank
   std::vector<TilePixels> done_;
   std::vector<PlannedTile> planned_;

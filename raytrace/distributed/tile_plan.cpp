@@ -36,7 +36,7 @@ bool last_ones_do(std::span<const PlannedTile> tiles, std::span<const std::int32
 }  // namespace
 
 std::vector<std::int32_t> plan_tiles(std::span<const PlannedTile> tiles, std::uint32_t count,
-                                     int ranks) {
+                                     int ranks, double uneven) {
   std::vector<std::int32_t> plan(count, kNoPlan);
   std::vector<double> loads(static_cast<std::size_t>(ranks));
   double sum = 0.0;
@@ -45,6 +45,10 @@ std::vector<std::int32_t> plan_tiles(std::span<const PlannedTile> tiles, std::ui
     sum += tile.seconds;
   }
   const double share = sum / ranks;
+  if (*std::max_element(loads.begin(), loads.end()) <= (1.0 + uneven) * share) {
+    for (const PlannedTile& tile : tiles) plan[tile.tile] = tile.owner;
+    return plan;
+  }
   std::vector<double> kept(loads.size());  // by owner, so far
   std::size_t filled = 0;                  // the first rank that may have room
   std::vector<double> room(loads.size());
@@ -67,7 +71,8 @@ std::vector<std::int32_t> plan_tiles(std::span<const PlannedTile> tiles, std::ui
 }
 
 std::vector<std::int32_t> plan_tiles(comm::Communicator& communicator,
-                                     std::span<const PlannedTile> mine, std::uint32_t count) {
+                                     std::span<const PlannedTile> mine, std::uint32_t count,
+                                     double uneven) {
   std::vector<PlannedTile> all;
   for (const comm::Buffer& message :
        comm::all_gather(communicator, comm::Buffer::of(std::as_bytes(mine)))) {
@@ -83,7 +88,7 @@ std::vector<std::int32_t> plan_tiles(comm::Communicator& communicator,
   if (all.empty()) return {};
   std::sort(all.begin(), all.end(),
             [](const PlannedTile& a, const PlannedTile& b) { return a.tile < b.tile; });
-  return plan_tiles(all, count, communicator.size());
+  return plan_tiles(all, count, communicator.size(), uneven);
 }
 
 }  // namespace delray::raytrace

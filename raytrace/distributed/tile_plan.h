@@ -24,15 +24,17 @@ struct PlannedTile {
 // Ranks keep tiles that show their own clusters, but for those beyond an equal share of all
 // seconds: the last ones of each such rank go to ranks that have less. Where shares of the last
 // frame were about equal, and no more tiles were away from their owners than need be, all stay
-// where they were: what they need is there. Element i: the rank of tile i of `count`, kNoPlan where
+// where they were: what they need is there. All tiles stay with their owners where none of these
+// has more than 1 + `uneven` equal shares. Element i: the rank of tile i of `count`, kNoPlan where
 // no tile is known. O(tiles + ranks).
 //
-// REQUIRES: tiles are by ascending number.
+// REQUIRES: tiles are by ascending number; uneven >= 0.
 std::vector<std::int32_t> plan_tiles(std::span<const PlannedTile> tiles, std::uint32_t count,
-                                     int ranks);
+                                     int ranks, double uneven = 0.0);
 
 // Collective: the same from what each rank has traced; nothing where no rank knows any.
 std::vector<std::int32_t> plan_tiles(comm::Communicator& communicator,
-                                     std::span<const PlannedTile> mine, std::uint32_t count);
+                                     std::span<const PlannedTile> mine, std::uint32_t count,
+                                     double uneven);
 
 }  // namespace delray::raytrace

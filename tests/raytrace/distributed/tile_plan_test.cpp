@@ -23,6 +23,12 @@ TEST(TilePlan, StaysWithOwnersWhereSharesAreEqualOrNothingIsKnown) {
   EXPECT_EQ(plan_tiles({}, 2, 3), (std::vector<std::int32_t>{kNoPlan, kNoPlan}));
 }
 
+TEST(TilePlan, LeavesUnevenSharesThatAreTolerated) {
+  const std::vector<PlannedTile> tiles = {{0, 1, 1}, {1, 1, 1}, {2, 1, 1}, {3, 0, 1}};
+  EXPECT_EQ(plan_tiles(tiles, 4, 2, 0.5), (std::vector<std::int32_t>{1, 1, 1, 0}));
+  EXPECT_EQ(plan_tiles(tiles, 4, 2, 0.4), (std::vector<std::int32_t>{1, 1, 0, 0}));
+}
+
 // Shares differ a little from frame to frame, and tiles stay; a little more, or owners elsewhere,
 // and they do not.
 TEST(TilePlan, KeepsTheRanksOfTheLastFrameWhereTheyDo) {
