@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -223,7 +224,7 @@ void measure_mpi(comm::Communicator& world, const Request& request) {
 // [--turns N] [--frames N] [--gouraud] [--numbers] [--phases] [--strategy NAME] [SCENE ...]: with
 // --numbers primitives travel as their numbers; scenes as delray render takes them. Bars are by
 // kind: terrain, city, any other.
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Request request;
   for (int i = 1; i < argc; ++i) {
     const auto is = [&](const char* option) { return std::strcmp(argv[i], option) == 0; };
@@ -240,6 +241,8 @@ int main(int argc, char** argv) {
       request.travel = raster::Travel::numbers;
     } else if (is("--gouraud")) {
       request.lighting = raster::Lighting::gouraud;
+    } else if (argv[i][0] == '-') {
+      throw std::invalid_argument(std::string(argv[i]) + ": not an option, or without a value");
     } else {
       request.scenes.emplace_back(argv[i]);
     }
@@ -260,4 +263,7 @@ int main(int argc, char** argv) {
                                                              : 2;
     compare(name, kind, request);
   }
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }
