@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <new>
 
 #include "parallel/stack.h"
 
@@ -40,10 +41,15 @@ AllowThreads::AllowThreads(int threads)
           static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())))}) {}
 AllowThreads::~AllowThreads() = default;
 
-void keep_workers() {
+struct JoinWorkers::Handle {
+  tbb::task_scheduler_handle handle;
+};
+
+JoinWorkers::JoinWorkers() {
   set_worker_stack_size();
-  tbb::task_arena(1, 1).execute([] {});  // a thread that has run something is a user to its end
+  handle_.reset(new Handle{tbb::attach()});
 }
+JoinWorkers::~JoinWorkers() { tbb::finalize(handle_->handle, std::nothrow); }
 
 int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
 int arena_thread() { return std::max(0, tbb::this_task_arena::current_thread_index()); }

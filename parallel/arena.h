@@ -56,11 +56,21 @@ class AllowThreads {
   std::unique_ptr<Limit> limit_;
 };
 
-// oneTBB's workers stay until the calling thread ends, or longer. Whoever starts threads that run
-// loops, and waits for them, calls it first: else the last of them to end sends the workers away,
-// each call starts them anew, and pthread_detach, by which oneTBB lets go of them, crashes now and
-// then: in glibc 2.36 it reads the stack of a thread that may have gone (oneTBB's issue 1758).
-void keep_workers();
+// Whoever starts threads that run loops, and waits for them, has one around that: at its end
+// oneTBB's workers are joined, unless somebody else in the process uses them. Without it the last
+// of those threads lets go of them by pthread_detach, which crashes now and then: in glibc 2.36 it
+// reads the stack of a worker that may have gone (oneTBB's issue 1758).
+class JoinWorkers {
+ public:
+  JoinWorkers();
+  ~JoinWorkers();
+  JoinWorkers(const JoinWorkers&) = delete;
+  JoinWorkers& operator=(const JoinWorkers&) = delete;
+
+ private:
+  struct Handle;
+  std::unique_ptr<Handle> handle_;
+};
 
 // The number of threads of the arena that the caller is in.
 int arena_threads();

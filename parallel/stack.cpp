@@ -42,7 +42,7 @@ void set_stack_sizes() {
 
 int run_on_own_stack(FunctionRef<int()> f) {
   set_stack_sizes();
-  keep_workers();
+  const JoinWorkers join_workers;
   int result = 0;
   std::thread thread;
   try {

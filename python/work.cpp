@@ -42,7 +42,7 @@ int thread_count(std::optional<int> threads) {
 void internal::run(const Work& work, parallel::FunctionRef<void(parallel::Progress&)> f) {
   parallel::Progress own;
   parallel::Progress& progress = work.progress != nullptr ? *work.progress : own;
-  parallel::keep_workers();
+  const parallel::JoinWorkers join_workers;
   if (!work.is_long) {
     const py::gil_scoped_release unlocked;
     run_in_arena(work.threads, progress, f);

@@ -326,7 +326,7 @@ void run_threads(int ranks, int threads_per_rank, const std::function<void(Commu
                                 std::to_string(kMostThreadsPerRank));
   }
   const parallel::AllowThreads allowed(ranks * threads_per_rank);
-  parallel::keep_workers();
+  const parallel::JoinWorkers join_workers;
   World world(ranks, options);
   std::vector<int> members(ranks);
   std::iota(members.begin(), members.end(), 0);

@@ -220,7 +220,6 @@ class Growing {
     if (renderer.over_mpi())
       throw std::invalid_argument("comm: a picture that grows is made by one process");
     renderer.preview_always();
-    parallel::keep_workers();
     worker_ = std::jthread([this] { work(); });
   }
   ~Growing() { stop(); }
@@ -281,6 +280,7 @@ class Growing {
   std::optional<Shown> newest_;
   bool is_done_ = false;
   std::exception_ptr failed_;
+  parallel::JoinWorkers join_workers_;
   std::jthread worker_;
 };
 

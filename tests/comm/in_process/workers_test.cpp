@@ -1,10 +1,11 @@
-// Threads that come and go leave oneTBB's workers where they are.
+// oneTBB's workers end before those who used them return, and nobody lets go of them.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
 
 #include <atomic>
-#include <chrono>
+#include <filesystem>
+#include <iterator>
 #include <thread>
 
 #include "comm/threads.h"
@@ -39,16 +40,22 @@ void meet() {
   });
 }
 
-TEST(Workers, OutliveRanksAndStacksOfTheirOwn) {
+std::ptrdiff_t threads_of_process() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
+}
+
+TEST(Workers, EndWithRanksAndStacksOfTheirOwn) {
   const int before = detached;
+  const std::ptrdiff_t threads = threads_of_process();
   for (int i = 0; i < 3; ++i) {
     comm::run_threads(2, 2, [](comm::Communicator&) { meet(); });
+    EXPECT_EQ(threads_of_process(), threads);
     parallel::run_on_own_stack([] {
       const parallel::AllowThreads allowed(2);
       parallel::Arena(2).execute([] { meet(); });
       return 0;
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // workers linger in an arena
+    EXPECT_EQ(threads_of_process(), threads);
   }
   EXPECT_EQ(detached, before);
 }
