@@ -49,7 +49,13 @@ JoinWorkers::JoinWorkers() {
   set_worker_stack_size();
   handle_.reset(new Handle{tbb::attach()});
 }
-JoinWorkers::~JoinWorkers() { tbb::finalize(handle_->handle, std::nothrow); }
+JoinWorkers::~JoinWorkers() {
+  // A thread that has used oneTBB itself keeps the workers to its end, and may be inside of an
+  // arena now, which finalize() would pull away from under it.
+  const bool uses_them =
+      tbb::this_task_arena::current_thread_index() != tbb::task_arena::not_initialized;
+  if (!uses_them) tbb::finalize(handle_->handle, std::nothrow);
+}
 
 int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
 int arena_thread() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
