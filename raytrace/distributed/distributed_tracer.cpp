@@ -111,8 +111,9 @@ void DistributedTracer::add(std::uint32_t tile) {
 bool DistributedTracer::start_waiting_tiles() {
   bool any = false;
   for (; !waiting_tiles_.empty() && in_flight_ <= kMostPixelTasks; any = true) {
-    start(waiting_tiles_.back());
-    waiting_tiles_.pop_back();
+    const std::uint32_t next = waiting_tiles_.front();
+    waiting_tiles_.pop_front();
+    start(next);
   }
   return any;
 }

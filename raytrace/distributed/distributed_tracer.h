@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -112,7 +113,7 @@ class DistributedTracer {
   std::vector<std::uint32_t> free_, ready_;  // numbers of pixel_tasks
   std::size_t in_flight_ = 0;
   std::vector<std::unique_ptr<Tile>> open_tiles_;
-  std::vector<std::uint32_t> waiting_tiles_;               // of this rank, which it has not started
+  std::deque<std::uint32_t> waiting_tiles_;                // of this rank, which it has not started
   std::vector<std::vector<std::uint32_t>> tiles_to_send_;  // by rank
   std::vector<TilePixels> done_;
   std::vector<PlannedTile> planned_;
