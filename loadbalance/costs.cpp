@@ -25,7 +25,7 @@ constexpr std::int64_t kPiecesPerPart = 1000;
 // a thousand parts still leave cuts within a tenth of a part's side.
 constexpr std::int64_t kMostBoxes = std::int64_t{1} << 17;
 
-// Primitives of a box, at most: of many more, the box would be about as large as a part.
+// Primitives of a box, at most. Ranks spend time on each box, and with larger ones gain none.
 constexpr std::uint64_t kLargestBox = 1024;
 
 // The first pixel of cell i of `cells` over `pixels` pixels.

@@ -57,9 +57,9 @@ class AllowThreads {
 };
 
 // Whoever starts threads that run loops, and waits for them, has one around that: at its end
-// oneTBB's workers are joined, unless somebody else in the process uses them. Without it the last
-// of those threads lets go of them by pthread_detach, which crashes now and then: in glibc 2.36 it
-// reads the stack of a worker that may have gone (oneTBB's issue 1758).
+// oneTBB's workers are joined, unless the caller or somebody else in the process uses them. Without
+// it the last of those threads lets go of them by pthread_detach, which crashes now and then: in
+// glibc 2.36 it reads the stack of a worker that may have gone (oneTBB's issue 1758).
 class JoinWorkers {
  public:
   JoinWorkers();

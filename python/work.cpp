@@ -42,7 +42,6 @@ int thread_count(std::optional<int> threads) {
 void internal::run(const Work& work, parallel::FunctionRef<void(parallel::Progress&)> f) {
   parallel::Progress own;
   parallel::Progress& progress = work.progress != nullptr ? *work.progress : own;
-  const parallel::JoinWorkers join_workers;
   if (!work.is_long) {
     const py::gil_scoped_release unlocked;
     run_in_arena(work.threads, progress, f);
@@ -55,6 +54,7 @@ void internal::run(const Work& work, parallel::FunctionRef<void(parallel::Progre
   bool interrupted = false;
   {
     const py::gil_scoped_release unlocked;
+    const parallel::JoinWorkers join_workers;
     std::jthread worker([&] {
       try {
         run_in_arena(work.threads, progress, f);

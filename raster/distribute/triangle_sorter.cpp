@@ -131,8 +131,8 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
   const ClusterOnScreen on_screen{rank_.screen, draw, block, mesh_cluster, vertices};
   if (!vertices.any_outside) {
     find_boxes(on_screen, boxes);
-    if (one_owner &&
-        !boxes.any_alone) {  // another rank: what is this rank's alone is not looked at
+    // Another rank, as clusters for this one alone stay.
+    if (one_owner && !boxes.any_alone) {
       memory_.add_shown(cluster.begin, cluster.end, memory_.owners[0]);
       return false;
     }

@@ -160,6 +160,7 @@ void DistributedTracer::wait_a_moment() {
 }
 
 void DistributedTracer::finish() {
+  send_all(true);  // the last tiles that are passed on, before own ones are begun
   while (!termination_.is_over()) {
     if (serve()) continue;
     termination_.idle();
